@@ -224,6 +224,8 @@ pub struct ParticipantDisplayHealth {
     pub round_trip_ms: Option<f64>,
     /// Delay from the participant's last press to its effect on the screen, in milliseconds.
     pub redraw_ms: Option<f64>,
+    /// Whether the page's browser can speak the session's language; `None` where signals are not spoken.
+    pub voice: Option<bool>,
     pub watching: u64,
     pub malformed: u64,
     pub refused: u64,
@@ -282,6 +284,10 @@ impl ParticipantDisplayHealth {
         let is_small = !self.upright && (width < SMALL_PX[0] || height < SMALL_PX[1]);
         let is_slow = self.round_trip_ms.is_some_and(|ms| ms > SLOW_MS);
         let (verdict, remedy) = match (is_small, is_slow) {
+            _ if self.voice == Some(false) => (
+                PreflightVerdict::Warning,
+                "signals are not spoken: the browser has no voice for the display's language; install one, or voice = false",
+            ),
             _ if self.upright && gaze != GazeSource::None => {
                 (PreflightVerdict::Warning, "turn the screen: on an upright page there is no gaze")
             }

@@ -43,7 +43,7 @@ mod lsl_output;
 
 use lsl_output::LslOutput;
 use station_display::StationDisplay;
-pub(super) use station_display::{PageInput, take_consent_input};
+pub(super) use station_display::{PageInput, lost_since, take_consent_input};
 
 /// Terminal and devices that all recordings of a series share.
 pub(super) struct OperatorStation {

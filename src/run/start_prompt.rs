@@ -70,8 +70,8 @@ impl ConsoleShell for OpenQuestion<'_> {
         let now = SessionTime(self.asked.elapsed().as_nanos() as u64);
         let message = match event {
             LoopEvent::Page(input) if self.on_display => {
-                if !take_consent_input(&input, &mut self.button, now) {
-                    self.notice = Some("the page sent a consent, but its button was not held long enough: not counted");
+                if let Some(notice) = take_consent_input(&input, &mut self.button, now) {
+                    self.notice = Some(notice);
                     self.dirty = true;
                 }
                 None

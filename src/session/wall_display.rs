@@ -39,12 +39,18 @@ pub struct DisplaySpec {
     pub reasons: bool,
     /// Whether the page plays a tone at a press without effect, and another one at a signal.
     pub sound: bool,
+    /// Whether the page speaks signals, with the browser's voices.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub voice: bool,
     /// Whether the page shows the time that the trial still has.
     pub clock: bool,
     /// Whether the page shows the number of served orders.
     pub served: bool,
     /// Where questionnaires are answered.
     pub questionnaire: AnswerDevice,
+    /// Whether the trial is paused while the page that takes part is lost for long; unset: in a plan.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pause_when_lost: Option<bool>,
 }
 
 impl Default for DisplaySpec {
@@ -62,9 +68,11 @@ impl Default for DisplaySpec {
             flash: true,
             reasons: true,
             sound: false,
+            voice: false,
             clock: false,
             served: false,
             questionnaire: AnswerDevice::Console,
+            pause_when_lost: None,
         }
     }
 }

@@ -74,6 +74,8 @@ pub struct TrialStatistics {
     pub useful_signals: Option<u64>,
     /// How the participant's display showed the robot; `None` without a display.
     pub display_arm: Option<RobotDepiction>,
+    /// Losses of the participant's display while the trial ran; `None` without a display.
+    pub display_losses: Option<DisplayLosses>,
     pub offers: OfferSummary,
     /// Duration of the trial without pauses, in seconds.
     pub seconds: f64,
@@ -89,6 +91,13 @@ pub struct TrialStatistics {
     pub stale_consensus: Option<String>,
     /// Statistics of the trial's freeze probes; `None` without probes.
     pub probes: Option<ProbedTrialStatistics>,
+}
+
+/// How often the participant's display was lost while the trial's clock went, and for how long.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct DisplayLosses {
+    pub times: u64,
+    pub seconds: f64,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -10,7 +10,7 @@ use tomcom_session::files::LanguageFile;
 use tomcom_session::files::built_in_session;
 use tomcom_session::files::parse::parse;
 use tomcom_session::protocol::StudyPhase;
-use tomcom_session::wall_display::{DisplayEvent, DisplaySpec};
+use tomcom_session::wall_display::{DisplayEvent, DisplaySpec, RobotDepiction};
 
 use crate::support::*;
 
@@ -95,7 +95,7 @@ fn has_recipe(kitchen: &Kitchen, list: &[String]) -> bool {
 
 /// Fields of what the page is told.
 const FIELDS: &str = "clock probe tutorial why reason about stage practice contents served presses \
-                      intention robot_waits signal cue question item stack dish number at effective \
+                      intention robot_does signal cue question item stack dish number at effective \
                       location storage recipe highlight next order items target checks";
 
 /// Holds a sight against the session: every text in it is one that the participant may see now, and nothing else.
@@ -122,7 +122,7 @@ pub(super) fn check(session: &Session) {
             "stage" => true,
             "clock" => session.spec.display.clock && ["goes", "stands"].contains(&text.as_str()),
             "reason" => words.contains_key(&format!("why {text}")),
-            "robot_waits" => words.contains_key(&format!("robot waits {text}")),
+            "robot_does" => words.contains_key(&format!("robot {}", text.replace('_', " "))),
             "contents" => ["empty", "served"].contains(&text.as_str()),
             "item" | "stack" | "dish" => on_display(text),
             "items" => value.pointer("/signal/recipe").is_some(),
@@ -461,6 +461,22 @@ fn both_languages_have_a_line_for_every_reason_that_names_no_content() {
             words.iter().filter(|(key, _)| key.starts_with("why ")).map(|(_, line)| line).collect();
         assert_eq!(lines.len(), 10, "{language}");
         assert!(lines.iter().all(|line| line.chars().count() <= 40 && line.ends_with('.')), "{lines:?}");
+    }
+}
+
+#[test]
+fn the_page_says_that_the_robot_is_stopped_also_where_a_real_one_stands() {
+    for arm in [RobotDepiction::Hand, RobotDepiction::None] {
+        let mut files = files("sessions/default.toml");
+        files.spec.display.arm = arm;
+        let mut engine = engine(files);
+        let mut does = |event: Event| {
+            assert_eq!(engine.input(engine.session().time, event).refused, None);
+            serde_json::to_value(sight(engine.session())).expect("a sight is JSON")["robot_does"].clone()
+        };
+        assert_eq!(does(Event::TrialStarted), Value::Null, "it works");
+        assert_eq!(does(Event::RobotStopped), "stopped", "{arm:?}");
+        assert_ne!(does(Event::RobotResumed), "stopped", "{arm:?}");
     }
 }
 

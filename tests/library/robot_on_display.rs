@@ -129,6 +129,30 @@ fn a_stopped_robot_stands_still_and_goes_on_from_there() {
 }
 
 #[test]
+fn a_robot_without_a_press_to_make_rests_at_its_place() {
+    let mut engine = session_with(ArmKind::Timed, RobotDepiction::Hand);
+    let rest = RobotHand::new(engine.session()).expect("it is shown").at(engine.session(), SessionTime::ZERO);
+    // Stopped and held by the wizard it has no press to make; stopped, it stays where it is.
+    let (stop, resume) = (250, 300);
+    let poses = poses(&mut engine, 25.0, |step, engine| {
+        let by = Sender::Wizard;
+        let events = match step {
+            step if step == stop => vec![Event::RobotStopped, Event::RobotHeld { by }],
+            step if step == resume => vec![Event::RobotResumed],
+            _ => return,
+        };
+        for event in events {
+            assert_eq!(engine.input(engine.session().time, event).refused, None);
+        }
+    });
+    let [stopped, goes, rests] = [resume as usize - 1, resume as usize + 12, poses.len() - 1].map(|at| poses[at].0);
+    assert!(apart([stopped.x, stopped.y], [rest.x, rest.y]) > 0.05, "it was stopped away from its place: {stopped:?}");
+    assert_eq!(stopped, poses[stop as usize + 1].0);
+    assert_ne!(goes, stopped);
+    assert_eq!(rests, rest);
+}
+
+#[test]
 fn a_session_says_how_the_robot_is_shown() {
     let shown = |arm: RobotDepiction| {
         let mut files = files("sessions/default.toml");

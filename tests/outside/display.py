@@ -6,8 +6,10 @@
 import argparse
 import json
 import os
+import socket
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -132,8 +134,8 @@ def shows_signals(tomcom, browser, folder, seed):
         start(console, page)
         is_open = "document.querySelector('.recipe').classList.contains('open')"
         assert not page.ask(is_open)
-        page.page.keyboard.press("e")
-        page.page.keyboard.press("e")
+        page.page.keyboard.press("y")
+        page.page.keyboard.press("y")
         console.key("q")
         page.wait_for(is_open)
         words = plain(page.ask("document.querySelector('.recipe').innerText"))
@@ -152,7 +154,7 @@ def shows_signals(tomcom, browser, folder, seed):
         other.stage("running")
         other.wait_for("document.querySelector('.toast').textContent.includes('only watches')")
         before = page.presses()
-        other.page.keyboard.press("r")
+        other.page.keyboard.press("u")
         other.page.wait_for_timeout(300)
         assert page.presses() == before
         other.close()
@@ -189,7 +191,16 @@ def shows_the_robot(tomcom, browser, folder, seed, shown):
             if number == 2:
                 page.page.wait_for_timeout(1200)
                 page.screenshot(folder / f"robot-{shown}-1920.png")
-        links = page.ask("document.querySelectorAll('.robot-arm path').length")
+        drawn = page.ask("['.robot-hand', '.robot-arm', '.robot-arm.links'].map((name) => document.querySelectorAll(name).length)")
+        # What the hand holds is drawn once: in the hand, or at its place where there is no hand.
+        assert page.ask("document.querySelectorAll('.spot.robot_hand .content svg').length") == 0 or shown == "none"
+        # A stop is said, and seen at a glance; then the robot goes on.
+        console.key(" ")
+        page.wait_for("document.getElementById('stage').dataset.robot === 'stopped'")
+        assert page.ask("document.querySelector('.zone.robot h2').textContent") == "Robot stopped"
+        page.screenshot(folder / f"robot-{shown}-stopped.png")
+        console.key("\x12")
+        page.wait_for("document.getElementById('stage').dataset.robot !== 'stopped'")
         page.close()
         console.quit()
     told = [message["robot"] for message in page.robot]
@@ -200,7 +211,7 @@ def shows_the_robot(tomcom, browser, folder, seed, shown):
         assert all(set(pose) == {"x", "y", "down"} for pose in told), told[:2]
         # The page asks a moment after the press, when the hand may have set out again.
         assert max(away) < 0.12, away
-    assert links == (2 if shown == "arm" else 0), links
+    assert drawn == {"none": [0, 0, 0], "hand": [1, 1, 0], "arm": [1, 1, 1]}[shown], drawn
     verified(tomcom, folder)
     print(f"the robot shown as {shown}: {len(told)} messages, each a pose; at its presses the hand is {max(a or 0 for a in away):.3f} of the "
           "display away at most", flush=True)
@@ -232,6 +243,67 @@ def comes_back(tomcom, browser, folder, seed):
         page.close()
         console.quit()
     print("the program killed and started again: the page comes back by itself with the whole state", flush=True)
+
+
+class Stall:
+    """Between page and program: passes everything on until it stalls, as a network that is gone without a word."""
+
+    def __init__(self, port):
+        self.port, self.stalled, self.server = port, threading.Event(), socket.create_server(("127.0.0.1", 0))
+        self.url = f"http://127.0.0.1:{self.server.getsockname()[1]}"
+        threading.Thread(target=self.accept, daemon=True).start()
+
+    def accept(self):
+        while True:
+            near, _ = self.server.accept()
+            if self.stalled.is_set():
+                continue
+            far = socket.create_connection(("127.0.0.1", self.port))
+            for one, other in ((near, far), (far, near)):
+                threading.Thread(target=self.pass_on, args=(one, other), daemon=True).start()
+
+    def pass_on(self, one, other):
+        try:
+            while data := one.recv(65536):
+                if not self.stalled.is_set():
+                    other.sendall(data)
+            other.shutdown(socket.SHUT_WR)
+        except OSError:
+            pass
+
+
+def tells_a_dead_connection(tomcom, browser, folder, seed):
+    """A connection that stalls without being closed: the page says so, the trial is paused by itself, and both come back."""
+    session = session_file(folder, "sushi", seed)
+    session.write_text(session.read_text().replace("[display]\n", "[display]\npause_when_lost = true\n"))
+    console = operate(tomcom, session, folder)
+    with console:
+        between = Stall(PORT)
+        page = Page(browser, between.url)
+        start(console, page)
+        page.press("take rice", "keyboard")
+        began = time.monotonic()
+        between.stalled.set()
+        page.wait_for("document.querySelector('.toast.says-lost')")
+        told_s, words = time.monotonic() - began, plain(page.ask("document.querySelector('.toast').innerText"))
+        assert words.startswith("Connection lost"), words
+        page.page.keyboard.press("x")
+        page.wait_for("document.querySelector('.toast.shakes')")
+        console.wait_for("PAUSED")
+        paused_s = time.monotonic() - began
+        between.stalled.clear()
+        page.stage("paused")
+        console.key(".")
+        page.stage("running")
+        page.press("cooking_pot", "keyboard")
+        page.close()
+        console.quit()
+    events = verified(tomcom, folder)
+    kinds = [event.get("what", event["kind"]) for event in events if event["kind"] in ("display", "trial_paused", "trial_resumed")]
+    kinds = [kind for kind in kinds if kind != "drawn"]
+    assert kinds[:5] == ["connected", "lost", "trial_paused", "connected", "trial_resumed"], kinds
+    assert [event["button"] for event in events if event["kind"] == "press" and event["agent"] == "human"] == ["take rice", "cooking_pot"]
+    print(f"a connection that stalls: told after {told_s:.1f} s, paused after {paused_s:.1f} s; the press meanwhile is refused aloud", flush=True)
 
 
 def asks_for_a_code(tomcom, browser, folder, seed):
@@ -367,6 +439,7 @@ def main():
         for shown in ("hand", "arm", "none"):
             shows_the_robot(tomcom, chromium, folder / f"robot-{shown}", seeds["sushi"], shown)
         comes_back(tomcom, chromium, folder / "restart", seeds["sushi"])
+        tells_a_dead_connection(tomcom, chromium, folder / "stall", seeds["sushi"])
         asks_for_a_code(tomcom, chromium, folder / "code", seeds["sushi"])
         has_phases(tomcom, chromium, folder / "phases")
         questions.answers_every_kind(tomcom, chromium, folder / "questions", PORT)

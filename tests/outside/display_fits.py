@@ -3,14 +3,16 @@
     tests/outside/display_fits.py TOMCOM FOLDER [--from-disk] [--screenshots]
 
 Languages: English, German, and one whose words are 40 % longer than the English ones. What is measured are boxes of the
-rendered text, by the browser: no text is cut off, leaves its own box, or meets another text, a button, a place or a tag. Capitals
+rendered text, by the browser: no text is cut off, leaves its own box, or meets another text, a button, a place or a tag; the robot's hand covers nothing where it stops. Capitals
 of English and German text are at least 17 arc minutes high at 3 m, on a screen of the layout's width. On an upright telephone
 of 390x844 what is touched is at least 44 pixels wide and high, and English and German text has capitals of at least 6.5 pixels.
 """
 
 import argparse
+import json
 import os
 import sys
+import tomllib
 from pathlib import Path
 
 from display_states import KITCHENS, long_language, opened, show, states
@@ -101,6 +103,31 @@ MEASURE = """([states, DISTANCE_M]) => Object.entries(states).map(([name, sight]
 })"""
 
 
+# The robot's hand at each place, as it is drawn there, and what it covers.
+HAND = """async () => {
+  const stage = document.getElementById("stage").getBoundingClientRect(), found = [];
+  const meets = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1.5 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 1.5;
+  for (const [name, x, y] of PLACES) {
+    Robot.move({ x, y, down: 0 });
+    await new Promise((then) => setTimeout(then, 420));
+    if (document.querySelector(".robot-hand.below")) continue;
+    const drawn = [...document.querySelectorAll(".gripper svg > g > *")].map((part) => part.getBoundingClientRect());
+    const seen = [...document.querySelectorAll(".name, .pill, .key, .tag, .spot.order, .shelf, .spot:not(.robot_hand) .furniture, .zone h2, .status span")].filter((made) => made.checkVisibility());
+    for (const made of seen) if (drawn.some((part) => meets(part, made.getBoundingClientRect()))) found.push(`${made.className} "${made.textContent}"`.trim());
+    if (found.length) return [name, found];
+  }
+  return null;
+}"""
+
+
+def places(kitchen):
+    """Name and middle of each location and storage on the wall where the robot can be."""
+    layout = tomllib.loads(Path(f"layouts/{kitchen}.toml").read_text())
+    spots = [spot for kind in ("order", "hand", "place", "storage") for spot in layout[kind] if spot.get("agent") != "human"]
+    middle = lambda area: (area["x"] + area["w"] / 2, area["y"] + area["h"] / 2)
+    return [(spot.get("name") or f"{spot['agent']}: {spot['ingredient']}", *middle(spot["display"])) for spot in spots]
+
+
 def too_small(size, language, measured):
     """What is smaller than it may be at this size."""
     if size in SIZES:
@@ -135,6 +162,11 @@ def main():
                         page.page.set_viewport_size({"width": size[0], "height": size[1]})
                         page.page.wait_for_timeout(150)
                         every = states(here, kitchen)
+                        if size in (SIZES[0], UPRIGHT[0]):
+                            show(page, every["empty"])
+                            covered = page.ask(HAND.replace("PLACES", json.dumps(places(kitchen))))
+                            if covered:
+                                failed.setdefault(f"the robot's hand at {covered[0]} covers {covered[1]}", []).append(f"{kitchen} {language} {size[0]}x{size[1]}")
                         for measured in page.page.evaluate(MEASURE, [every, DISTANCE_M]):
                             looked += 1
                             name, found = measured["name"], measured["found"] + too_small(size, language, measured)

@@ -1,9 +1,10 @@
-"""Settings of the participant's page in a real browser: sound, clock, number of served orders; and upright screens.
+"""Settings of the participant's page in a real browser: sound, voice, clock, number of served orders; its hands; and upright screens.
 
     tests/outside/display_settings.py TOMCOM FOLDER
 """
 
 import argparse
+import json
 import os
 import sys
 import time
@@ -97,6 +98,96 @@ def counts(tomcom, chromium, folder, seed):
     print("clock: it goes, stands in a pause, and is told to a page that is loaded again; without the settings nothing is told", flush=True)
 
 
+# A browser with voices for these languages, which keeps what it was told to speak.
+VOICES = """
+window.spoken = [];
+const voices = LANGUAGES.map((lang) => ({ lang, name: lang, default: false, localService: true, voiceURI: lang }));
+Object.defineProperty(window, "speechSynthesis", { value: Object.assign(new EventTarget(), { getVoices: () => voices, cancel: () => {}, speak: (one) => spoken.push([one.text, one.lang]) }) });
+window.SpeechSynthesisUtterance = class { constructor(text) { this.text = text; } };
+"""
+
+
+def speaks(tomcom, chromium, folder, seed, languages):
+    """Signals are spoken in the page's language, where the browser has a voice for it; the check before the trial says if not."""
+    session = session_file(folder, "sushi", seed)
+    session.write_text(session.read_text().replace("[display]\n", '[display]\nvoice = true\nlanguage = "de"\n'))
+    with operate(tomcom, session, folder) as console:
+        page = Page(chromium, url(), more=VOICES.replace("LANGUAGES", json.dumps(languages)))
+        page.stage("welcome")
+        page.page.mouse.move(960, 500)
+        console.key("\x10")
+        console.wait_for("ROBOT HELD")
+        time.sleep(1.5)
+        console.key(".")
+        console.wait_for("Checks before the trial")
+        has_voice = any(language.startswith("de") for language in languages)
+        assert ("signals are not spoken" in plain(console.text())) != has_voice, console.text()
+        console.key("o")
+        page.stage("running")
+        page.wait_for("Stage.shown().contents.some((what) => what.dish)")
+        console.key("c")
+        page.wait_for("document.querySelector('.highlight')")
+        console.key("\x7f")
+        page.wait_for("!document.querySelector('.highlight')")
+        console.key("q")
+        page.wait_for("document.querySelector('.recipe').classList.contains('open')")
+        page.page.wait_for_timeout(100)
+        spoken = page.ask("spoken")
+        page.close()
+        console.quit()
+    verified(tomcom, folder)
+    if has_voice:
+        assert spoken[0] == ["Sehen Sie hierhin: Schneidebrett", "de-DE"], spoken
+        assert len(spoken) == 2 and ":" in spoken[1][0] and "," in spoken[1][0], spoken
+    else:
+        assert spoken == [], spoken
+    print(f"voices {languages}: {spoken or 'nothing is spoken, and the check before the trial says so'}", flush=True)
+
+
+def hands(tomcom, chromium, folder, seed):
+    """Keys are places on the keyboard, whatever is printed on them; a gamepad is shown once it is used; what does nothing says so."""
+    badge = lambda page, button: page.ask(f"document.querySelector('[data-of=\"{button}\"]').textContent")
+    with operate(tomcom, session_file(folder, "sushi", seed), folder) as console:
+        page = Page(chromium, url())
+        start(console, page)
+        # A German keyboard with Caps Lock: where the layout has Y, Z is printed.
+        def down(code, key):
+            page.ask(f"for (const kind of ['keydown', 'keyup']) window.dispatchEvent(new KeyboardEvent(kind, {{ code: {json.dumps(code)}, key: {json.dumps(key)} }}))")
+        assert badge(page, "take rice") == "Y"
+        down("KeyY", "Z")
+        page.wait_for("Stage.shown().presses[0]?.number === 1 && Stage.shown().presses[0].effective")
+        assert badge(page, "take rice") == "Z"
+        page.page.wait_for_timeout(100)
+        down("KeyM", "m")
+        page.wait_for("document.querySelector('.why.says')?.textContent === 'That does nothing here.'")
+        assert page.presses() == 1
+        page.ask("pad.axes = [0, 1, 0, 0]")
+        page.wait_for("Stage.shown().presses[0].number === 2")
+        page.ask("pad.axes[1] = 0")
+        assert page.ask("document.querySelector('.key.of-pad svg') !== null")
+        # The guide button belongs to the system.
+        page.push(16)
+        page.page.wait_for_timeout(100)
+        assert page.presses() == 2
+        page.page.keyboard.press("u")
+        page.wait_for("Stage.shown().presses[0].number === 3")
+        assert page.ask("document.querySelector('.key.of-pad')") is None
+        # A page that only watches says nothing of that, and takes no part.
+        other = Page(chromium, url() + "/?watch", size=(1280, 720))
+        other.stage("running")
+        assert not other.ask("document.querySelector('.toast.open')")
+        page.close()
+        console.wait_for("NO DISPLAY")
+        other.page.keyboard.press("i")
+        other.page.wait_for_timeout(500)
+        assert not [message for message in other.said if message["kind"] in ("press", "take_part")], other.said
+        other.close()
+        console.quit()
+    events = verified(tomcom, folder)
+    assert [event["button"] for event in events if event["kind"] == "press" and event["agent"] == "human"] == ["take rice", "trash", "take nori"]
+    print("keys by place, a stick, the guide button, a key that does nothing; a page that only watches", flush=True)
+
+
 def upright(tomcom, chromium, folder, kitchen, seed):
     """An order on a telephone by touch: no gaze is sent until the screen is turned, and the check says why."""
     with operate(tomcom, session_file(folder, kitchen, seed), folder) as console:
@@ -148,6 +239,9 @@ def main():
         seeds = {kitchen: seed_of(tomcom, folder / kitchen, kitchen) for kitchen in ("sushi", "burger")}
         for is_on in (True, False):
             sounds(tomcom, chromium, folder / f"sound-{is_on}", seeds["sushi"], is_on)
+        for languages in (["en-US", "de-DE"], ["en-US"]):
+            speaks(tomcom, chromium, folder / f"voice-{len(languages)}", seeds["sushi"], languages)
+        hands(tomcom, chromium, folder / "hands", seeds["sushi"])
         counts(tomcom, chromium, folder / "counts", seeds["sushi"])
         for kitchen, seed in seeds.items():
             upright(tomcom, chromium, folder / f"upright-{kitchen}", kitchen, seed)

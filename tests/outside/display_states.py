@@ -179,7 +179,7 @@ def states(scene, kitchen):
         return [content(spot) for spot in spots]
 
     def sight(stage="running", turn=0, **changed):
-        return {"stage": stage, "practice": False, "contents": contents(turn), "served": 3, "clock": "stands" if stage in ("ready", "running", "paused", "over") else None, "presses": [None, None], "intention": None, "robot_waits": None,
+        return {"stage": stage, "practice": False, "contents": contents(turn), "served": 3, "clock": "stands" if stage in ("ready", "running", "paused", "over") else None, "presses": [None, None], "intention": None, "robot_does": None,
                 "signal": None, "cue": None, "question": None, "tutorial": None, "probe": None, "target": None, "checks": False, **changed}
 
     made = {stage: sight(stage) for stage in ("welcome", "instruction", "ready", "paused", "over", "tutorial_over", "thanks")}
@@ -194,8 +194,8 @@ def states(scene, kitchen):
         served[order] = "served"
     made["served"] = sight(contents=served)
     made["empty"] = sight(contents=["empty"] * len(spots), served=0)
-    for what in ("human", "order"):
-        made[f"robot waits: {what}"] = sight(robot_waits=what)
+    for what in ("waits_human", "waits_order", "waits_hand", "slow", "stopped"):
+        made[f"robot: {what}"] = sight(robot_does=what)
     for index, spot in enumerate(spots):
         if spot["kind"] != "order":
             made[f"highlight of {spot['name']}"] = sight(signal={"highlight": index})

@@ -35,10 +35,10 @@ def browser(*more):
 class Page:
     """A page of the display, with what it says to the program."""
 
-    def __init__(self, browser, url, size=(1920, 1080), touch=False, code=None, files=None):
-        """`files`: a folder whose files stand in for those that the program serves."""
+    def __init__(self, browser, url, size=(1920, 1080), touch=False, code=None, files=None, more=""):
+        """`more`: a script that runs before those of the page; `files`: a folder whose files stand in for those that the program serves."""
         self.context = browser.new_context(viewport={"width": size[0], "height": size[1]}, has_touch=touch, bypass_csp=True)
-        self.context.add_init_script(GAMEPAD)
+        self.context.add_init_script(GAMEPAD + more)
         self.page = self.context.new_page()
         if files:
             self.page.route(re.compile(r"\.(js|css)$"), lambda route: route.fulfill(path=files / route.request.url.rsplit("/", 1)[1]))

@@ -34,6 +34,8 @@ struct PageConnection {
     hub: Arc<ServerState>,
     place: Arc<ConnectionHandle>,
     life: PageLife,
+    /// Whether the session was told that the page is lost, since nothing was heard of it for a while.
+    is_told_lost: bool,
     page: String,
     waits: bool,
     size: ActivePage,
@@ -50,8 +52,9 @@ pub(super) async fn serve_page(socket: WebSocket, hub: Arc<ServerState>, place: 
     let now = Instant::now();
     let (page, size, life) = (String::new(), ActivePage::default(), PageLife::new(now));
     let (waits, faults, allowed, pressed) = (false, 0, (PER_SECOND, now), 0);
+    let (is_told_lost, last) = (false, None);
     let mut connection =
-        PageConnection { socket, hub, place, life, page, waits, size, faults, allowed, pressed, last: None };
+        PageConnection { socket, hub, place, life, is_told_lost, page, waits, size, faults, allowed, pressed, last };
     let Some(waits) = connection.identify().await else { return };
     // Beyond the limit of watching pages, only the page that takes part is admitted to the display.
     if !connection.take_part(waits).await && !connection.place.admit() {
@@ -167,6 +170,10 @@ impl PageConnection {
         if self.life.is_gone(now) {
             return None;
         }
+        if self.life.is_silent(now) && self.acts() && !self.is_told_lost {
+            self.is_told_lost = true;
+            self.report_lost().await;
+        }
         self.life.pinged(now);
         timeout(STUCK, self.socket.send(Message::Ping(Bytes::new()))).await.ok()?.ok()
     }
@@ -216,12 +223,18 @@ impl PageConnection {
         self.hub.inputs.send(PageInput::Connected { width_px, height_px }).await.ok()
     }
 
+    /// Reports to the session that the page that took part is lost.
+    async fn report_lost(&mut self) {
+        self.hub.status.page(|page| *page = None);
+        let _ = self.hub.inputs.send(PageInput::Lost { since: self.life.heard }).await;
+    }
+
     async fn stop_taking_part(&mut self) {
-        let left = self.acts();
-        if left {
+        if self.acts() {
             self.hub.acting.send_replace(None);
-            self.hub.status.page(|page| *page = None);
-            let _ = self.hub.inputs.send(PageInput::Lost).await;
+            if !self.is_told_lost {
+                self.report_lost().await;
+            }
         }
     }
 
@@ -246,7 +259,14 @@ impl PageConnection {
                     self.say(&MessageToPage::Ended).await?;
                     return None;
                 }
-                said = self.socket.recv() => self.take(said?.ok()?).await?,
+                said = self.socket.recv() => {
+                    let said = said?.ok()?;
+                    // It was silent only for a while.
+                    if std::mem::take(&mut self.is_told_lost) && self.acts() {
+                        self.report_size().await?;
+                    }
+                    self.take(said).await?;
+                }
                 changed = scene.changed() => {
                     changed.ok()?;
                     self.pass_on(&mut scene).await?;
@@ -297,6 +317,12 @@ impl PageConnection {
                     self.hub.status.page(|page| page.iter_mut().for_each(change));
                 }
                 self.pong(t, hidden).await
+            }
+            Some(MessageFromPage::Voice { there }) => {
+                if self.acts() {
+                    self.hub.status.page(|page| page.iter_mut().for_each(|page| page.voice = Some(there)));
+                }
+                Some(())
             }
             Some(MessageFromPage::Size { width, height, upright }) => {
                 self.note_size(width, height, upright);
@@ -349,6 +375,7 @@ impl PageConnection {
             MessageFromPage::Hello { .. }
             | MessageFromPage::Ping { .. }
             | MessageFromPage::Size { .. }
+            | MessageFromPage::Voice { .. }
             | MessageFromPage::TakePart => {
                 return self.fault();
             }
@@ -369,10 +396,12 @@ impl PageConnection {
 }
 
 /// Interval of the server's pings to a page.
-const PING: Duration = Duration::from_secs(2);
-/// Silence of a browser (no answer to pings) after which it counts as gone.
+const PING: Duration = Duration::from_millis(500);
+/// Silence of a browser (no answer to pings) after which the session is told that the page is lost, and after which it
+/// counts as gone.
+const LOST: Duration = Duration::from_secs(2);
 const SILENCE: Duration = Duration::from_secs(8);
-/// Time without a message after which a visible page counts as hanging; a visible page sends one message per second.
+/// Time without a message after which a visible page counts as hanging; a visible page sends two messages per second.
 const VISIBLE: Duration = Duration::from_secs(8);
 /// Time without a message after which a hidden page counts as hanging.
 const HIDDEN: Duration = Duration::from_secs(90);
@@ -413,6 +442,11 @@ impl PageLife {
     /// Time of the server's next ping to the page, or of giving up the page.
     pub fn next(&self) -> Instant {
         (self.pinged + PING).min(self.gone_at())
+    }
+
+    /// Whether nothing was heard of the browser for so long that its page counts as lost.
+    pub fn is_silent(&self, now: Instant) -> bool {
+        now >= self.heard + LOST
     }
 
     /// Whether nothing was heard from the page for too long.
@@ -459,6 +493,9 @@ mod tests {
         assert_eq!(stays_s(true, true, 60), hours_s, "a hidden page, whose timers are slowed down");
         assert_eq!(stays_s(false, false, hours_s), 8, "a browser that is gone");
         assert_eq!(stays_s(true, false, hours_s), 8, "a visible page that hangs");
+        let (start, mut life) = (Instant::now(), PageLife::new(Instant::now()));
+        life.heard(start, false);
+        assert!(!life.is_silent(start + Duration::from_millis(1900)) && life.is_silent(start + LOST), "told soon");
         assert_eq!(stays_s(true, true, hours_s), 90, "a hidden page that hangs");
         assert_eq!(stays_s(false, true, 60), 8, "a hidden page whose browser is gone");
     }

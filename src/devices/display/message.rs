@@ -71,6 +71,10 @@ pub enum MessageFromPage {
         /// Time of the drawing, in milliseconds on the server's clock.
         at: f64,
     },
+    /// Whether the browser can speak the session's language, where the session wants that.
+    Voice {
+        there: bool,
+    },
     Redrawn {
         /// Time from the press until its effect was drawn, in milliseconds.
         took: f64,
@@ -122,7 +126,7 @@ pub fn read(text: &str) -> Option<MessageFromPage> {
         MessageFromPage::Drawn { at, .. } => is_time(at),
         MessageFromPage::Redrawn { took } => (0.0..1e6).contains(took),
         MessageFromPage::Size { width, height, .. } => is_size(*width, *height),
-        MessageFromPage::TakePart => true,
+        MessageFromPage::TakePart | MessageFromPage::Voice { .. } => true,
     };
     is_fine.then_some(message)
 }
@@ -149,6 +153,7 @@ fn is_reply(reply: &ParticipantResponse) -> bool {
         ParticipantResponse::Next
         | ParticipantResponse::Hold { .. }
         | ParticipantResponse::Consent
+        | ParticipantResponse::Decline
         | ParticipantResponse::Confirm => true,
     }
 }
@@ -210,7 +215,10 @@ pub enum PageInput {
         width_px: u32,
         height_px: u32,
     },
-    Lost,
+    Lost {
+        /// When the page was last heard of.
+        since: Instant,
+    },
     Press {
         button: String,
         at: Instant,
@@ -250,6 +258,8 @@ pub enum ParticipantResponse {
     /// Consent of the participant, who held the consent button for as long as the page asks. It counts if the program
     /// was told of the hold, and it lasted that long.
     Consent,
+    /// The participant does not consent, which the wizard is told.
+    Decline,
     Confirm,
     Turn {
         step: String,

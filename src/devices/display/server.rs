@@ -44,11 +44,12 @@ const TOLD: Duration = Duration::from_millis(5);
 const REFUSED: &str = "Refused: open the participant's page at the address that the console shows.";
 
 /// Files of the participant's page: path, content type, and content of each file.
-const FILES: [(&str, &str, &str); 15] = [
+const FILES: [(&str, &str, &str); 16] = [
     ("/", "text/html; charset=utf-8", include_str!("page/index.html")),
     ("/display.css", "text/css; charset=utf-8", include_str!("page/display.css")),
     ("/display.js", "text/javascript; charset=utf-8", include_str!("page/display.js")),
     ("/sound.js", "text/javascript; charset=utf-8", include_str!("page/sound.js")),
+    ("/readiness.js", "text/javascript; charset=utf-8", include_str!("page/readiness.js")),
     ("/reason.js", "text/javascript; charset=utf-8", include_str!("page/reason.js")),
     ("/status.js", "text/javascript; charset=utf-8", include_str!("page/status.js")),
     ("/robot.js", "text/javascript; charset=utf-8", include_str!("page/robot.js")),

@@ -107,6 +107,8 @@ pub struct ActivePage {
     pub upright: bool,
     pub round_trip_ms: Option<f64>,
     pub redraw_ms: Option<f64>,
+    /// Whether the browser can speak the session's language; `None` where the session does not want that.
+    pub voice: Option<bool>,
 }
 
 /// State and counters of the participant's pages.

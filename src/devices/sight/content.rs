@@ -9,7 +9,7 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::kitchen::rules::NoEffectReason;
 use tomcom_core::kitchen::{Agent, ButtonId, ContentId, Kitchen, LocationId, LocationKind, OrderContent, State};
-use tomcom_core::robot::IdleReason;
+use tomcom_core::robot::{IdleReason, SafetyMode};
 use tomcom_session::gaze_check::RunningGazeCheck;
 use tomcom_session::plan::{PhaseSpec, TutorialStep, TutorialStepKind};
 use tomcom_session::wall_display::RobotDepiction;
@@ -31,8 +31,8 @@ pub struct DisplayContent {
     pub presses: [Option<DisplayedPress>; 2],
     /// Location or storage where the robot is about to press, if the session shows the robot's intention.
     pub intention: Option<SceneElement>,
-    /// What the idle robot waits for, if the display shows the robot.
-    pub robot_waits: Option<RobotWait>,
+    /// What the robot does, if that is not simply its work.
+    pub robot_does: Option<RobotActivity>,
     pub signal: Option<DisplayedSignal>,
     /// Number of the newest event that is marked by a flash.
     pub cue: Option<u64>,
@@ -66,13 +66,19 @@ pub enum DisplayStage {
     Thanks,
 }
 
-/// What the idle robot waits for, as the participant's display says it; the page has a text for each. Which press of the
-/// human would help is not told, since that would be a proposal.
+/// What the robot does instead of simply working, as the participant's display says it; the page has a text for each.
+/// Which press of the human would help is not told, since that would be a proposal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum RobotWait {
-    Human,
-    Order,
+pub enum RobotActivity {
+    WaitsHuman,
+    WaitsOrder,
+    /// A hand is near the arm.
+    Slow,
+    /// A hand is in the arm's way.
+    WaitsHand,
+    /// Until the wizard releases it.
+    Stopped,
 }
 
 /// Content that a location shows on the participant's display.
@@ -148,7 +154,7 @@ pub fn sight(session: &Session) -> DisplayContent {
         }),
         intention: intention
             .map(|(button, ..)| spot(kitchen, Agent::Robot, kitchen.button(Agent::Robot, button).action)),
-        robot_waits: robot_waits(session).filter(|_| is_trial),
+        robot_does: robot_does(session).filter(|_| is_trial),
         signal: match practised {
             Some((step, tutorial)) => explained(kitchen, tutorial.kitchen, step),
             None if probe.is_some() => None,
@@ -164,15 +170,22 @@ pub fn sight(session: &Session) -> DisplayContent {
     }
 }
 
-/// What the idle robot waits for. Where the display shows no robot, a real one is seen, and the display says nothing.
-fn robot_waits(session: &Session) -> Option<RobotWait> {
+/// What the robot does, if that is not simply its work. Where the display shows no robot, a real one is seen, and the
+/// display says only that it is stopped.
+fn robot_does(session: &Session) -> Option<RobotActivity> {
+    let robot = &session.robot;
+    if robot.stopped {
+        return Some(RobotActivity::Stopped);
+    }
     if session.spec.display.arm == RobotDepiction::None {
         return None;
     }
-    match session.robot.idle.as_ref()?.0 {
-        IdleReason::HumanTurn => Some(RobotWait::Human),
-        IdleReason::NoOrder => Some(RobotWait::Order),
-        IdleReason::Skipped => None,
+    match (robot.arm.mode, robot.idle.as_ref().map(|(reason, _)| reason)) {
+        (SafetyMode::Safeguard, _) => Some(RobotActivity::WaitsHand),
+        (_, Some(IdleReason::HumanTurn)) => Some(RobotActivity::WaitsHuman),
+        (_, Some(IdleReason::NoOrder)) => Some(RobotActivity::WaitsOrder),
+        (SafetyMode::Reduced, _) => Some(RobotActivity::Slow),
+        _ => None,
     }
 }
 

@@ -25,6 +25,10 @@ use tomcom_session::{Session, TrialPhase};
 const ABOVE: f64 = 0.85;
 /// Time that the hand takes to go up after a press, in seconds.
 const UP_S: f64 = 0.3;
+/// Time without an intended press after which the hand goes to its resting position, in seconds, and its speed there, in
+/// displays per second.
+const RESTS_AFTER_S: f64 = 0.5;
+const HOME_PER_S: f64 = 0.8;
 /// Distance, in metres, below which the physical arm's tip counts as being at its button.
 #[cfg(feature = "physics")]
 const AT_M: f64 = 1e-3;
@@ -48,8 +52,12 @@ struct Motion {
 #[derive(Clone, Debug)]
 pub struct RobotHand {
     pose: RobotHandPose,
+    /// Resting position: the place of the robot's hand on the display.
+    home: [f64; 2],
     motion: Option<Motion>,
     last: SessionTime,
+    /// Time since the last intended press, in seconds.
+    idle_s: f64,
     #[cfg(feature = "physics")]
     arm: Option<ArmTip>,
 }
@@ -61,11 +69,13 @@ impl RobotHand {
             return None;
         }
         let kitchen = &session.kitchen;
-        let [x, y] = kitchen.location(kitchen.hands[Agent::Robot.index()]).display.centre();
+        let home = kitchen.location(kitchen.hands[Agent::Robot.index()]).display.centre();
         Some(RobotHand {
-            pose: RobotHandPose { x, y, down: 0.0 },
+            pose: RobotHandPose { x: home[0], y: home[1], down: 0.0 },
+            home,
             motion: None,
             last: SessionTime::ZERO,
+            idle_s: 0.0,
             #[cfg(feature = "physics")]
             arm: ArmTip::of_session(session),
         })
@@ -76,8 +86,13 @@ impl RobotHand {
         let passed_s = now.secs_since(self.last).max(0.0);
         self.last = now;
         if session.phase == TrialPhase::Running {
+            self.idle_s = if session.robot.intention.is_some() { 0.0 } else { self.idle_s + passed_s };
             self.go(session, now);
             self.go_down(session, passed_s);
+        }
+        let is_idle = session.phase == TrialPhase::Running && self.idle_s > RESTS_AFTER_S && !session.robot.stopped;
+        if is_idle || matches!(session.phase, TrialPhase::Over(_)) {
+            self.go_home(passed_s);
         }
         self.pose.rounded()
     }
@@ -104,6 +119,13 @@ impl RobotHand {
         let along = |axis: usize| motion.from[axis] + (motion.to[axis] - motion.from[axis]) * travelled;
         (self.pose.x, self.pose.y) = (along(0), along(1));
         self.motion = Some(Motion { done, ..motion });
+    }
+
+    /// Moves the hand towards its resting position.
+    fn go_home(&mut self, passed_s: f64) {
+        let (dx, dy) = (self.home[0] - self.pose.x, self.home[1] - self.pose.y);
+        let share = (HOME_PER_S * passed_s / dx.hypot(dy).max(1e-9)).min(1.0);
+        (self.pose.x, self.pose.y) = (self.pose.x + share * dx, self.pose.y + share * dy);
     }
 
     /// Share of the hand's motion that is completed at this time.

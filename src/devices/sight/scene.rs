@@ -45,6 +45,8 @@ pub struct DisplayScene {
     pub served: bool,
     /// Whether the page makes a sound at a press without effect and at a signal.
     pub sound: bool,
+    /// Whether the page speaks signals.
+    pub voice: bool,
     pub pointer: bool,
 }
 
@@ -143,6 +145,7 @@ pub fn scene(session: &Session) -> DisplayScene {
         clock: spec.display.clock,
         served: spec.display.served,
         sound: spec.display.sound,
+        voice: spec.display.voice,
         pointer: has_pointer(spec),
     }
 }

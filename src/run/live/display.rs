@@ -80,6 +80,7 @@ impl ParticipantDisplay {
         health.upright = counts.page.is_some_and(|page| page.upright);
         health.round_trip_ms = counts.page.and_then(|page| page.round_trip_ms);
         health.redraw_ms = counts.page.and_then(|page| page.redraw_ms);
+        health.voice = counts.page.and_then(|page| page.voice);
         (health.watching, health.malformed, health.refused) = (counts.watching, counts.malformed, counts.refused);
     }
 }
@@ -100,7 +101,7 @@ impl PageEvent {
                 let event = Event::Display(DisplayEvent::Connected { width_px, height_px });
                 return PageEvent { event: Some(event), notice: Some((NoticeLevel::Done, text)) };
             }
-            PageInput::Lost => {
+            PageInput::Lost { .. } => {
                 let text = "the participant's display is disconnected: it reconnects by itself, or open its page again";
                 let event = Event::Display(DisplayEvent::Lost);
                 return PageEvent { event: Some(event), notice: Some((NoticeLevel::Alarm, text.to_string())) };
@@ -133,7 +134,7 @@ fn answered(reply: ParticipantResponse, session: &Session, now: SessionTime) -> 
         }
         ParticipantResponse::Next | ParticipantResponse::Back { .. } => None,
         // Consent is asked for before a recording begins; a late consent changes nothing.
-        ParticipantResponse::Hold { .. } | ParticipantResponse::Consent => None,
+        ParticipantResponse::Hold { .. } | ParticipantResponse::Consent | ParticipantResponse::Decline => None,
         ParticipantResponse::Confirm => answer(ProtocolEvent::AnswersConfirmed, session),
         ParticipantResponse::Turn { step, forward } => turn(session, &step, forward),
         ParticipantResponse::Choose { step, choice } => practise(session, TutorialEvent::Answered { step, choice }),

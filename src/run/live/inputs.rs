@@ -5,13 +5,18 @@ use super::live_session::Live;
 use crate::console::console_model::NoticeLevel;
 use crate::console::{ConsoleCommand, ConsoleMessage, update};
 use crate::run::leaving::LeavingReason;
-use crate::run::operator_station::PageInput;
+use crate::run::operator_station::{PageInput, lost_since};
+use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_devices::gaze_input::TrackerMessage;
 use tomcom_session::history::wording;
 use tomcom_session::preflight_checks::RejectedGaze;
 use tomcom_session::tracker::{TrackerEvent, TrackerRecording};
+use tomcom_session::wall_display::DisplayEvent;
 use tomcom_session::{Event, TrialPhase};
+
+/// Time without the page that takes part after which a trial is paused, in seconds.
+const PAUSES_AFTER_S: f64 = 3.0;
 
 impl Live {
     /// Handles a message from the terminal; returns how the wizard leaves the recording, if the message leaves it.
@@ -56,12 +61,32 @@ impl Live {
         if self.engine.session().phase == TrialPhase::Closed {
             return;
         }
-        let PageEvent { event, notice } = PageEvent::from_input(input, self.engine.session(), self.clock.now());
+        let now = self.clock.now();
+        let silent = lost_since(&input).map(|at| SessionTime::from_secs_f64(at.elapsed().as_secs_f64()));
+        let PageEvent { event, notice } = PageEvent::from_input(input, self.engine.session(), now);
+        match event {
+            Some(Event::Display(DisplayEvent::Lost)) => self.page_lost = silent.map(|silent| now - silent),
+            Some(Event::Display(DisplayEvent::Connected { .. })) => self.page_lost = None,
+            _ => {}
+        }
         if let Some(event) = event {
             self.input(event);
         }
         if let Some((level, text)) = notice {
             self.model.say(level, text);
+        }
+    }
+
+    /// Pauses the trial once the page that takes part is lost for long, if the session wants that.
+    pub(super) fn pause_without_page(&mut self) {
+        let now = self.clock.now();
+        let is_long = self.page_lost.take_if(|since| now.secs_since(*since) >= PAUSES_AFTER_S).is_some();
+        let session = self.engine.session();
+        let is_wanted = session.spec.display.pause_when_lost.unwrap_or(session.spec.step.is_some());
+        if is_long && is_wanted && session.can_be_paused() {
+            self.input(Event::TrialPaused);
+            let text = format!("paused by itself: the participant's display is lost for {PAUSES_AFTER_S:.0} s");
+            self.model.say(NoticeLevel::Alarm, text);
         }
     }
 

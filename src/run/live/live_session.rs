@@ -23,6 +23,7 @@ use crate::run::operator_station::{GazeTracker, OperatorStation};
 use crate::run::options::SessionStart;
 use crate::run::resume::{PreparedSession, RecordingPlace};
 use crate::run::terminal::{TerminalScreen, theme};
+use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_session::engine::SessionEngine;
@@ -50,6 +51,8 @@ pub(super) struct Live {
     pub(super) comparison: Option<ComparisonThreadHandle>,
     /// The participant's display, if there is one.
     pub(super) display: Option<ParticipantDisplay>,
+    /// Session time at which the page that takes part was last heard of, while it is lost.
+    pub(super) page_lost: Option<SessionTime>,
     pub(super) model: ConsoleModel,
     header: LogHeader,
     pub(super) log: LogWriter,
@@ -183,6 +186,7 @@ impl Live {
             advisor,
             comparison,
             display,
+            page_lost: None,
             model,
             header,
             log,

@@ -98,6 +98,7 @@ impl Live {
     /// Checks that the recording is still in place, and whether the computer's clock jumped.
     pub(super) fn watch(&mut self) {
         self.examine_display();
+        self.pause_without_page();
         if let Some(by_ms) = self.clock.jump() {
             self.input(Event::ClockJumped { by_ms });
             let text = format!("the computer's clock jumped by {:.1} s: session time did not", by_ms as f64 / 1000.0);

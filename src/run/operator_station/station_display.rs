@@ -1,5 +1,7 @@
 //! The participant's display at the operator's station.
 
+use std::time::Instant;
+
 use crate::run::error::LiveError;
 use tomcom_core::base::time::SessionTime;
 pub(in crate::run) use tomcom_devices::display::PageInput;
@@ -55,15 +57,31 @@ impl StationDisplay {
     }
 }
 
-/// Handles an input of the participant's page while it asks for consent; returns false if the page says that the
-/// participant consented, although the button was not held.
-pub(in crate::run) fn take_consent_input(input: &PageInput, button: &mut ConsentHold, now: SessionTime) -> bool {
+/// When the page that took part was last heard of, if the input says that it is lost.
+pub(in crate::run) fn lost_since(input: &PageInput) -> Option<Instant> {
+    match input {
+        PageInput::Lost { since } => Some(*since),
+        _ => None,
+    }
+}
+
+/// Handles an input of the participant's page while it asks for consent; returns what the wizard is told of it.
+pub(in crate::run) fn take_consent_input(
+    input: &PageInput,
+    button: &mut ConsentHold,
+    now: SessionTime,
+) -> Option<&'static str> {
     match input {
         PageInput::Reply(ParticipantResponse::Hold { held }) => button.hold(*held, now),
-        PageInput::Reply(ParticipantResponse::Consent) => return button.tell(now),
+        PageInput::Reply(ParticipantResponse::Consent) if !button.tell(now) => {
+            return Some("the page sent a consent, but its button was not held long enough: not counted");
+        }
+        PageInput::Reply(ParticipantResponse::Decline) => {
+            return Some("the participant chose \"I do not agree\" on the display: talk with them, then answer here");
+        }
         // The button of another page, or of one that was loaded again, is not held.
-        PageInput::Connected { .. } | PageInput::Lost => *button = ConsentHold::default(),
+        PageInput::Connected { .. } | PageInput::Lost { .. } => *button = ConsentHold::default(),
         _ => {}
     }
-    true
+    None
 }

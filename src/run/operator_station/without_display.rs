@@ -33,6 +33,15 @@ impl StationDisplay {
 }
 
 /// Never called, since this build has no participant's page.
-pub(in crate::run) fn take_consent_input(input: &PageInput, _: &mut ConsentHold, _: SessionTime) -> bool {
+pub(in crate::run) fn lost_since(input: &PageInput) -> Option<std::time::Instant> {
+    match *input {}
+}
+
+/// Never called, since this build has no participant's page.
+pub(in crate::run) fn take_consent_input(
+    input: &PageInput,
+    _: &mut ConsentHold,
+    _: SessionTime,
+) -> Option<&'static str> {
     match *input {}
 }

@@ -19,7 +19,7 @@ use crate::robot_tally::{RobotEventSummary, RobotEventTally};
 use crate::standing::exclusion_status;
 use crate::tables::participants::{TutorialAnswerCollector, TutorialQuestionRow};
 use crate::trial_statistics::{
-    FalseBeliefErrors, QuestionnaireAnswer, SignalSenderWithParameter, TrialDetails, TrialStatistics,
+    DisplayLosses, FalseBeliefErrors, QuestionnaireAnswer, SignalSenderWithParameter, TrialDetails, TrialStatistics,
 };
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::ConceptName;
@@ -42,7 +42,7 @@ use tomcom_session::log::{LogEnding, LogReader, rater_codes};
 use tomcom_session::plan::{AnswerFormat, Questionnaire, QuestionnaireItem, QuestionnaireItemKind, ScoreRule};
 use tomcom_session::protocol::{ProtocolEvent, StudyProtocolState};
 use tomcom_session::settings::{Condition, ParticipantKind};
-use tomcom_session::wall_display::AnswerDevice;
+use tomcom_session::wall_display::{AnswerDevice, DisplayEvent};
 use tomcom_session::watcher::{SenderComparisonFollower, SenderComparisonSettings};
 use tomcom_session::wizard_log::{WizardLog, clock_at};
 use tomcom_session::{Event, LogHeader, Session, TimelineEntry, TimelineEvent, TimestampedEvent, TrialPhase};
@@ -59,6 +59,37 @@ pub struct RecordingAnalysis {
 pub struct AnalysisScope {
     pub concepts: bool,
     pub events: bool,
+}
+
+/// Sums up the times at which the participant's display was lost, on the trial's clock.
+#[derive(Debug, Default)]
+struct DisplayLossTally {
+    lost: Option<SessionTime>,
+    losses: DisplayLosses,
+}
+
+impl DisplayLossTally {
+    fn note(&mut self, stamped: &TimestampedEvent, session: &Session) {
+        match stamped.event {
+            Event::Display(DisplayEvent::Lost) => self.lost = self.lost.or(Some(stamped.time)),
+            Event::Display(DisplayEvent::Connected { .. }) => self.close(session, stamped.time),
+            _ => {}
+        }
+    }
+
+    /// Ends a loss that is still open; losses while the trial's clock stood do not count.
+    fn close(&mut self, session: &Session, now: SessionTime) {
+        let seconds = self.lost.take().map_or(0.0, |lost| since(session, lost, now));
+        if seconds > 0.0 {
+            self.losses.times += 1;
+            self.losses.seconds += seconds;
+        }
+    }
+
+    fn finish(mut self, session: &Session) -> DisplayLosses {
+        self.close(session, session.time);
+        self.losses
+    }
 }
 
 struct ByEstimate {
@@ -119,6 +150,7 @@ pub fn read(
     let mut regret = RegretSum::default();
     let mut answers = Vec::new();
     let mut probes = ProbeCollector::default();
+    let mut display = DisplayLossTally::default();
     let is_simulated = header.session.participant.kind == ParticipantKind::Simulated;
     let is_coded = rater_codes::raters(log.folder())?.len() >= 2;
     let mut pass = ReplayPass::new(log.session(), extent.concepts, is_simulated || is_coded, cost.clone());
@@ -136,6 +168,7 @@ pub fn read(
         hands.note(&line.stamped, &follower.session);
         probes.note(&line.stamped, &change, follower);
         regret.note(&kitchen, &mut cost, &change);
+        display.note(&line.stamped, &follower.session);
         robot.note(&line.stamped.event, follower.session.trial_clock(line.stamped.time), was_on);
         if let Some(by_estimate) = &mut by_estimate {
             by_estimate.note(&line.stamped, &change, follower, &mut cost);
@@ -157,6 +190,7 @@ pub fn read(
     let left_out = standing.left_out(&follower.session, log.ending() == LogEnding::Running);
     let mut trial = trial(name, &header, follower, left_out);
     trial.ended = robot.ended;
+    trial.display_losses = trial.display_arm.map(|_| display.finish(&follower.session));
     trial.robot = robot.into_figures();
     let known = basis.and_then(|basis| known_beliefs(follower, &judged, basis, &coded, &trace, &mut cost));
     trial.beliefs = basis.map(|basis| beliefs(follower, &judged, basis, known.as_ref()));
@@ -340,6 +374,7 @@ fn trial(name: &str, header: &LogHeader, follower: &SessionFollower, left_out: O
         answers: Vec::new(),
         wizard: None,
         useful_signals: None,
+        display_losses: None,
         display_arm: (spec.participant.kind == ParticipantKind::Display).then_some(spec.display.arm),
         offers: OfferSummary::default(),
         wizard_saw_advice: session.wizard_saw_advice(),

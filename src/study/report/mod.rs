@@ -16,7 +16,7 @@ use crate::facts::RecordingFacts;
 use crate::figures::{StudySummary, pairs_in_words};
 use crate::planned_trial::{copies_in_words, in_words};
 use crate::report::elements::{Captions, PageColumn, UNKNOWN, cells, count, number, p_sentence, percent, section};
-use crate::trial_statistics::TrialStatistics;
+use crate::trial_statistics::{DisplayLosses, TrialStatistics};
 use tomcom_core::base::text;
 use tomcom_core::measures::raters::{BeliefSource, RaterAgreement};
 use tomcom_session::event::TrialEndReason;
@@ -195,8 +195,25 @@ fn trials_section(captions: &mut Captions, figures: &StudySummary, trials: &[Tri
             }
             "\n"
         }
+        (without_display(trials))
     };
     section("Trials", content)
+}
+
+/// How often participants' displays were lost; empty if none was.
+fn without_display(trials: &[TrialStatistics]) -> Markup {
+    let lost: Vec<DisplayLosses> =
+        trials.iter().filter_map(|trial| trial.display_losses).filter(|it| it.times > 0).collect();
+    let (times, seconds) = (lost.iter().map(|it| it.times).sum::<u64>(), lost.iter().map(|it| it.seconds).sum::<f64>());
+    html! {
+        @if times > 0 {
+            p class="note" {
+                "The participant's display was lost " (text::count(times, "time", "times")) " while a trial ran, for "
+                (number(Some(seconds), 1)) " s, in " (text::count(lost.len() as u64, "trial", "trials")) " (" code { "display_lost" } ")."
+            }
+            "\n"
+        }
+    }
 }
 
 fn counting(captions: &mut Captions, trials: &[TrialStatistics]) -> Markup {

@@ -188,6 +188,10 @@ impl CsvRow for TrialStatistics {
                 named model" => t.human_model.as_str();
             "initiative_presses", "presses", "of robot_presses: those that the robot set out for by its own \
                 initiative, since the participant did not press" => t.initiative_presses;
+            "display_lost", "times", "times that the participant's display was lost while the trial ran; empty: no \
+                display" => t.display_losses.map(|losses| losses.times);
+            "display_lost_s", "s", "time for which it was lost, on the trial's clock; empty: no display"
+                => t.display_losses.map(|losses| losses.seconds);
         });
         columns
     }

@@ -53,6 +53,7 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
         left_out: None,
         human_model: "plain".to_string(),
         initiative_presses: 0,
+        display_losses: None,
         ended: Some(TrialEndReason::Presses),
         arm: ArmKind::Timed,
         robot: RobotEventSummary::default(),

@@ -5,6 +5,7 @@ use tomcom_session::plan::QuestionnaireItemKind;
 use tomcom_session::protocol::StudyPhase;
 use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::tutorial::{TutorialEvent, TutorialPageTurner};
+use tomcom_session::wall_display::DisplayEvent;
 use tomcom_study::column::{CsvRow, CsvTable, TableCell, TableColumn};
 use tomcom_study::column::{DataDictionaryRow, described, dictionary};
 use tomcom_study::files::export::AnalysisFolder;
@@ -79,6 +80,46 @@ fn analysis(name: &str) -> RecordingAnalysis {
             .expect("a recording")
             .expect("a trial");
     analysis
+}
+
+/// A loss counts for as long as the trial's clock goes: neither before the trial nor in a pause.
+#[test]
+fn losses_of_the_display_are_counted_on_the_trials_clock() {
+    let mut files = session_file("default.toml");
+    (files.spec.participant.kind, files.spec.participant.gaze) = (ParticipantKind::Display, GazeSource::None);
+    let header = LogHeader::new(files.spec.clone(), 0, files.kitchen.layout.clone(), files.kitchen.recipes.clone());
+    let mut log = LogWriter::create_live(&folder("display-lost"), "2026-03-14", &header).expect("a folder");
+    let (lost, back) = (
+        || Event::Display(DisplayEvent::Lost),
+        || Event::Display(DisplayEvent::Connected { width_px: 1920, height_px: 1080 }),
+    );
+    let events = [
+        (0.5, back()),
+        (1.0, lost()),
+        (3.0, back()),
+        (4.0, Event::TrialStarted),
+        (5.0, lost()),
+        (6.5, back()),
+        (8.0, lost()),
+        (9.0, Event::TrialPaused),
+        (15.0, back()),
+        (16.0, Event::TrialResumed),
+        (20.0, Event::TrialEnded { reason: TrialEndReason::Wizard }),
+        (21.0, Event::SessionEnded),
+    ];
+    let mut engine = engine_of(files, 0);
+    for (time, event) in events {
+        let outcome = engine.input(at(time), event);
+        assert_eq!(outcome.refused, None);
+        outcome.events.iter().for_each(|stamped| log.append(stamped).expect("the log can be written"));
+    }
+    drop(log.flush());
+    let scope = AnalysisScope { concepts: false, events: true };
+    let read = reading::read(log.folder(), "lost", scope, None, &mut KeptCost::default()).expect("a recording");
+    let trial = read.expect("a trial").1.trial;
+    assert_eq!(cell(&trial, "display_lost"), TableCell::from(2_u64));
+    assert_eq!(cell(&trial, "display_lost_s"), TableCell::from(2.5_f64));
+    assert_eq!(cell(&analysis("no-display").trial, "display_lost"), TableCell::Unknown, "no display");
 }
 
 /// The first trial without signals, the second with them; the second has half the errors.

@@ -193,6 +193,11 @@ const Art = (() => {
     },
   };
 
+  // The robot's gripper, from above: wrist, palm, and two fingers towards the right.
+  const finger = '<path class="finger" d="M36 38 L44 17 Q46 12 52 12 L90 14 Q97 15 96 21 L94 28 L57 25 L49 43 Z"/>';
+  const gripper = `<g fill="#d5e0ec" stroke="#54779f" stroke-width="3" stroke-linejoin="round"><g>${finger}</g><g transform="matrix(1 0 0 -1 0 100)">${finger}</g>
+    <rect x="22" y="31" width="26" height="38" rx="9" fill="#bccde0"/><circle cx="17" cy="50" r="14"/><circle cx="17" cy="50" r="5" fill="#54779f" stroke="none"/></g>`;
+
   // Furniture: `w` is its width when its height is 100.
   const PLACES = {
     board: (w) => `<rect x="4" y="8" width="${w - 8}" height="84" rx="12" fill="#d8b98c"/><rect x="4" y="8" width="${w - 8}" height="78" rx="12" fill="#e6cda4"/>
@@ -216,8 +221,7 @@ const Art = (() => {
     tray: (w) => `<rect x="4" y="8" width="${w - 8}" height="84" rx="16" fill="#b4473f"/><rect x="10" y="13" width="${w - 20}" height="72" rx="12" fill="#d9695f"/>
       <rect x="18" y="21" width="${w - 36}" height="56" rx="8" fill="#e27d73"/>`,
     human_hand: (w) => `<g transform="translate(${w / 2 - 50} 0)"><path d="M28 96 C20 84 12 70 8 58 C6 52 14 48 18 54 L27 66 L24 26 C23 18 33 17 34 25 L38 52 L40 16 C40 8 51 8 51 16 L52 52 L58 20 C59 12 69 14 68 22 L64 55 L74 34 C78 27 86 31 84 38 C80 54 78 74 68 96 Z" fill="#f6d3b3" stroke="#d3a57c" stroke-width="2.4" stroke-linejoin="round"/></g>`,
-    robot_hand: (w) => `<g transform="translate(${w / 2 - 50} 0)"><rect x="38" y="-2" width="24" height="22" rx="3" fill="#8c9aa6"/><rect x="18" y="14" width="64" height="18" rx="7" fill="#a9b6c0" stroke="#7a8894" stroke-width="2.4"/>
-      <path d="M18 28 h16 v28 l-8 30 h-12 v-34 z M82 28 h-16 v28 l8 30 h12 v-34 z" fill="#c3ced7" stroke="#7a8894" stroke-width="2.4" stroke-linejoin="round"/></g>`,
+    robot_hand: (w) => `<g transform="translate(${w / 2 - 50} 0)">${gripper}</g>`,
   };
 
   /** A thing whose look no file defines: its name on a tile. */
@@ -263,6 +267,17 @@ const Art = (() => {
     tag(rows) {
       const cells = rows.flatMap((row, y) => [...row].map((cell, x) => (cell === "#" ? `M${x} ${y}h1v1h-1z` : "")));
       return svg(`<rect width="${rows.length}" height="${rows.length}" fill="#fff"/><path d="${cells.join("")}" fill="#000" shape-rendering="crispEdges"/>`, `0 0 ${rows.length} ${rows.length}`);
+    },
+    GRIPPER: svg(gripper),
+    /** A button of a gamepad; a standard one by where it is, another one by its number from 1. */
+    pad(number, isStandard) {
+      const dots = [[50, 80], [80, 50], [20, 50], [50, 20]], arms = { 12: "M36 36 V8 H64 V36 Z", 13: "M36 64 V92 H64 V64 Z", 14: "M36 36 H8 V64 H36 Z", 15: "M64 36 H92 V64 H64 Z" };
+      const names = { 4: "L1", 5: "R1", 6: "L2", 7: "R2", 8: "SEL", 9: "STA", 10: "L3", 11: "R3" }, sticks = { 17: "L", 18: "R" };
+      if (!isStandard || !(number in { ...dots, ...arms, ...names, ...sticks })) return String(number + 1);
+      if (names[number]) return names[number];
+      if (number < 4) return svg(dots.map(([x, y], at) => `<circle cx="${x}" cy="${y}" r="15" fill="currentColor" opacity="${at === number ? 1 : 0.35}"/>`).join(""));
+      if (arms[number]) return svg(`<path d="M36 8 H64 V36 H92 V64 H64 V92 H36 V64 H8 V36 H36 Z" fill="currentColor" opacity=".35"/><path d="${arms[number]}" fill="currentColor"/>`);
+      return svg(`<circle cx="50" cy="50" r="40" fill="none" stroke="currentColor" stroke-width="9"/><text x="50" y="54" font-size="54" font-weight="700" text-anchor="middle" dominant-baseline="central" fill="currentColor">${sticks[number]}</text>`);
     },
     SHAPES: [...Object.keys(ITEMS), ...Object.keys(PLACES)],
   };

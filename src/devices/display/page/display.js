@@ -3,8 +3,11 @@
 // program. A lost connection is opened again automatically, and then transmits the whole state.
 
 (() => {
-  const RESIZED_MS = 400, IDLE_MS = 3000, PING_MS = 1000, FIRST_PINGS = 5, FIRST_PING_MS = 60, SILENCE_MS = 4000, AGAIN_MS = 500, POINTER_MS = 16;
-  let socket = null, code = new URLSearchParams(location.search).get("code"), number = 0, acts = null, isFree = false;
+  const RESIZED_MS = 400, IDLE_MS = 3000, PING_MS = 500, FIRST_PINGS = 5, FIRST_PING_MS = 60, SILENCE_MS = 1200, LOOK_MS = 250, OPENING_MS = 3000, AGAIN_MS = 500, POINTER_MS = 16;
+  const asksFor = new URLSearchParams(location.search);
+  // A page that only watches, for a second screen, says nothing of itself.
+  const watches = asksFor.has("watch");
+  let socket = null, code = asksFor.get("code"), number = 0, acts = null, isFree = false;
   let trips = [], took = null, cue = null, pointed = null, pinger = 0;
   // When the unanswered ping was sent; 0: no ping is unanswered. The timers of a hidden page are slow, so the time
   // since the last message does not show whether the connection works.
@@ -47,6 +50,7 @@
     asked = 0;
     if (message.kind === "pong") {
       took = now - message.t;
+      Readiness.note(took);
       trips = [...trips.slice(-19), { took, offset: message.at - (message.t + now) / 2 }];
     } else if (message.kind === "pairing") {
       code = null;
@@ -56,6 +60,7 @@
     } else if (message.kind === "role") {
       ({ acts, free: isFree } = message);
       Stage.mark({ acts, free: isFree });
+      if (acts) Sound.tellVoice();
     } else if (message.kind === "scene") {
       Stage.build(message.scene);
       Stage.mark({ acts, free: isFree });
@@ -101,7 +106,7 @@
 
   function hello() {
     // A page that was watching goes on watching, since the page that takes part may reconnect later than this one.
-    say({ kind: "hello", page, ...size(), code, waits: acts === false });
+    say({ kind: "hello", page, ...size(), code, waits: watches || acts === false });
     trips = [];
     number = 0;
     waiting.length = 0;
@@ -114,20 +119,30 @@
     asked = performance.now();
     made.onopen = () => { Stage.mark({ lost: false, ended: false }); hello(); };
     made.onmessage = hear;
-    made.onclose = () => {
-      if (socket !== made) return;
-      Stage.mark({ lost: true });
-      setTimeout(connect, AGAIN_MS);
-    };
+    made.onclose = () => made === socket && lose();
+  }
+
+  /** The connection does not work: that is told at once, without waiting for it to be closed, and another one is opened. */
+  function lose() {
+    const old = socket;
+    socket = null;
+    asked = 0;
+    waiting.length = 0;
+    clearTimeout(pinger);
+    if (old) old.onopen = old.onmessage = old.onclose = null;
+    if (old) old.close();
+    Stage.mark({ lost: true });
+    setTimeout(connect, AGAIN_MS);
   }
 
   function press(button, at) {
     // Without the server's clock a press has no time; without a connection it has no effect.
-    if (!isOpen() || !trips.length || !acts) return;
+    if (!isOpen()) return Stage.refuse();
+    if (!trips.length || !acts) return undefined;
     number += 1;
     const stage = Stage.shown() && Stage.shown().stage;
     if (stage === "running") waiting.push(at);
-    say({ kind: "press", number, button, at: serverTime(at) });
+    return say({ kind: "press", number, button, at: serverTime(at) });
   }
 
   function point(x, y) {
@@ -149,7 +164,7 @@
     }
   }, POINTER_MS);
   // If no page takes part any more, touching a watching page makes it take part.
-  for (const kind of ["pointerdown", "keydown"]) window.addEventListener(kind, () => acts === false && isFree && say({ kind: "take_part" }));
+  for (const kind of ["pointerdown", "keydown"]) window.addEventListener(kind, () => acts === false && isFree && !watches && say({ kind: "take_part" }));
   let resized = 0, idle = 0;
   window.addEventListener("resize", () => {
     Stage.resize();
@@ -164,8 +179,13 @@
     idle = setTimeout(rest, IDLE_MS);
   });
   rest();
-  // A connection that no longer answers is closed, so that it is opened again.
-  setInterval(() => isOpen() && asked && performance.now() - asked > SILENCE_MS && socket.close(), 500);
+  // A connection that no longer answers is lost. Where the page itself stood still, the answer may be there already.
+  let looked = 0;
+  setInterval(() => {
+    const now = performance.now(), stood = now - looked > 2 * LOOK_MS;
+    looked = now;
+    if (socket && asked && !stood && now - asked > (isOpen() ? SILENCE_MS : OPENING_MS)) lose();
+  }, LOOK_MS);
   // Keeps the screen on, if the browser supports that.
   const stayOn = () => navigator.wakeLock && navigator.wakeLock.request("screen").catch(() => {});
   document.addEventListener("visibilitychange", () => {
@@ -174,6 +194,8 @@
     if (isOpen() && trips.length) ping();
   });
   stayOn();
-  Hands.begin(press, say, point);
+  Stage.mark({ watches });
+  Sound.begin(say);
+  Hands.begin(press, (message) => (isOpen() ? say(message) : Stage.refuse()), point);
   connect();
 })();

@@ -1,13 +1,37 @@
 "use strict";
-// Inputs of the participant's hands: keys, gamepad, touch. Each press is sent once, with the time at which it happened.
+// Inputs of the participant's hands: keys, gamepad, touch. Each press is sent once, with the time at which it happened. A key is where it
+// is on the keyboard of the layout file, whatever is printed on it here: what is printed is what the page shows.
 
 const Hands = (() => {
   // Presses of one button within this time are contact bounce.
   const BOUNCE_MS = 50, PUSHED_MS = 8;
   // Buttons of a standard gamepad, by the keys that mean the same in a probe and in the tutorial.
+  // The sticks of a standard gamepad are buttons, too, which are pressed by a push to any side; the guide button belongs to the system.
+  const STICKS = { 17: [0, 1], 18: [2, 3] }, GUIDE = 16, PUSHED = 0.6;
+  const CODES = { "-": "Minus", "=": "Equal", "[": "BracketLeft", "]": "BracketRight", ";": "Semicolon", "'": "Quote", ",": "Comma", ".": "Period", "/": "Slash", "\\": "Backslash", "`": "Backquote" };
   const PAD = { 0: "Enter", 12: "ArrowUp", 13: "ArrowDown", 14: "ArrowLeft", 15: "ArrowRight" };
   const down = new Set(), pads = new Map(), last = new Map();
+  // What is printed on the keys of this keyboard, by their codes, as far as the browser says or has shown it.
+  const printed = new Map();
   let tell = () => {};
+
+  /** Where a key of the layout file is on the keyboard. */
+  const codeOf = (key) => CODES[key] || (/^[a-z]$/i.test(key) ? `Key${key.toUpperCase()}` : /^[0-9]$/.test(key) ? `Digit${key}` : "");
+  /** What is printed on the key of a button. */
+  const printedOn = ({ key }) => (printed.get(codeOf(key)) || key).toUpperCase();
+
+  /** The button of a key that was pressed: the one at this place of the keyboard, or the one with this sign. */
+  function buttonOf({ buttons }, { code, key }) {
+    const keyed = buttons.filter((button) => button.key);
+    return keyed.find((button) => code && codeOf(button.key) === code) || keyed.find((button) => button.key.toLowerCase() === key.toLowerCase() && !printed.has(codeOf(button.key)));
+  }
+
+  /** Keeps what a key types, if it is another sign than the page shows on it. */
+  function learn({ code, key, shiftKey }, button) {
+    if (!code || shiftKey || key.length !== 1 || codeOf(button.key) !== code || printedOn(button) === key.toUpperCase()) return;
+    printed.set(code, key);
+    Stage.label();
+  }
 
   function press(button, at) {
     if (at - (last.get(button) ?? -Infinity) < BOUNCE_MS) return;
@@ -53,10 +77,13 @@ const Hands = (() => {
     }
     const lesson = Stage.shown() && Stage.shown().tutorial;
     if (lesson && Tutorial.key(event.key, lesson, isHeld)) return event.preventDefault();
-    const button = scene.buttons.find(({ key }) => key && key.toLowerCase() === event.key.toLowerCase());
-    if (!button) return lesson && !isHeld && Tutorial.refuse(event.key, lesson);
+    const button = buttonOf(scene, event);
+    if (!button && lesson) return isHeld || Tutorial.refuse(event.key, lesson);
+    if (!button) return isHeld || event.key.length > 1 || Stage.sayNothing();
     event.preventDefault();
-    if (!isHeld) press(button.name, timeOf(event.timeStamp));
+    Stage.useBadges("keys");
+    learn(event, button);
+    return isHeld || press(button.name, timeOf(event.timeStamp));
   }
 
   function touched(event) {
@@ -78,18 +105,25 @@ const Hands = (() => {
     // A gamepad that is unplugged does not report that its buttons are released.
     for (const index of [...pads.keys()].filter((known) => !there.some((pad) => pad.index === known))) {
       pads.delete(index);
+      Stage.useBadges("keys");
       Questions.letGo();
     }
     for (const pad of there) {
       const before = pads.get(pad.index) || [];
       const now = [...pad.buttons].map((button) => (typeof button === "object" ? button.pressed : button > 0.5));
+      if (pad.mapping === "standard") {
+        for (const [number, axes] of Object.entries(STICKS)) now[number] = axes.some((axis) => Math.abs(pad.axes[axis] || 0) > PUSHED);
+        now[GUIDE] = false;
+      }
       now.forEach((isDown, number) => {
         if (!isDown || before[number] || !scene) return;
+        Stage.useBadges("pad", pad.mapping === "standard");
         if (Stage.shown() && Stage.shown().probe) return Probe.press(PAD[number], false);
         const lesson = Stage.shown() && Stage.shown().tutorial;
         if (lesson && PAD[number] && Tutorial.pad(PAD[number], lesson)) return;
         const button = scene.buttons.find(({ gamepad }) => gamepad === number);
-        if (button) press(button.name, timeOf(pad.timestamp));
+        if (!button) return lesson || Stage.sayNothing();
+        press(button.name, timeOf(pad.timestamp));
       });
       const wasDown = before.some(Boolean), isDown = now.some(Boolean);
       if (wasDown !== isDown) Questions.holdBy("gamepad", isDown, Stage.shown() && Stage.shown().question);
@@ -116,7 +150,13 @@ const Hands = (() => {
     window.addEventListener("pointermove", (event) => event.pointerType === "mouse" && toPoint(event.clientX, event.clientY));
     // Gamepads are read more often than frames are drawn, so that a press need not wait for the next frame.
     setInterval(poll, 4);
+    // Where the browser knows the keyboard, the page shows what is printed on it from the beginning.
+    const known = navigator.keyboard && navigator.keyboard.getLayoutMap ? navigator.keyboard.getLayoutMap() : Promise.resolve([]);
+    known.then((signs) => {
+      for (const [code, sign] of signs) printed.set(code, sign);
+      Stage.label();
+    }).catch(() => {});
   }
 
-  return { begin };
+  return { begin, printedOn };
 })();

@@ -118,7 +118,11 @@ const Questions = (() => {
       for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
         button.addEventListener(end, () => hold("touch", false));
       }
-      return [reading, button, text("p", "hint", words["consent text"])];
+      const hint = text("p", "hint", words["consent text"]), not = text("button", "declines", words.decline);
+      not.addEventListener("click", () => { tell({ kind: "decline" }); hint.textContent = words.declined; });
+      const row = element("div", "choosing", button);
+      row.append(not);
+      return [reading, row, hint];
     },
     slider(question, words, kit) {
       const { form } = question, { element } = kit, slider = element("div", "slider"), thumb = element("b", "");

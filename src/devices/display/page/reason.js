@@ -49,7 +49,16 @@ const Reason = (() => {
     return replay(made, "says");
   }
 
+  /** Says something that is about no place, in the middle below. */
+  function say(said, kitchen, { room, put, replay, text }) {
+    const wide = Math.min(0.9, room.widthOf(said, 1.6 * room.em[0]) + 3 * room.em[0]);
+    made.replaceChildren(text("span", "", said));
+    made.style.setProperty("--words", 1);
+    put(made, [0.5 - wide / 2, 0.94, wide, 2.8 * room.em[1]]);
+    replay(made, "says");
+  }
+
   const hide = () => made.classList.remove("says");
 
-  return { build, wordsOf, draw, hide };
+  return { build, wordsOf, draw, say, hide };
 })();

@@ -1,65 +1,143 @@
 "use strict";
-// Picture of the robot's hand over the kitchen, and of its arm from above, at the pose that the program sends, with the
-// item that the hand holds.
+// The robot, at the pose that the program sends: a gripper of two fingers with what it holds, on a forearm from the robot's side. At a
+// place it stands beside it, so that it covers nothing; its arm lies below everything.
 
 const Robot = (() => {
-  // Lengths of the arm's two links and position of its base, in heights of the stage; the arm reaches every place.
-  const LINK = 0.68, BASE = [-0.02, 0.5];
-  let made = null, room = null, ratio = 1, holds = "", last = null;
+  // Sizes of the gripper that are tried beside a place, in em, and its distance from a place, and from an order with its frame.
+  const SIZES = [7.4, 6.8, 6.2, 5.6, 5, 4.4, 3.8, 3.2, 2.6], GAP = 0.15, FRAME = 0.8;
+  // How far before the middle of the gripper it holds something, as a share of its size.
+  const HELD = 0.22;
+  // How fast the drawn pose follows the one that is told, which comes 20 times a second.
+  const FOLLOWS_MS = 40;
+  let made = null, stands = [], holds = "", told = null, drawn = null, ticked = 0;
 
-  const svg = (inside) => `<svg viewBox="0 0 100 100" aria-hidden="true">${inside}</svg>`;
-  const GRIPPER = svg(`<g fill="#d9e4f0" stroke="#33557d" stroke-width="3" stroke-linejoin="round">
-    <rect x="20" y="4" width="13" height="46" rx="6"/><rect x="67" y="4" width="13" height="46" rx="6"/>
-    <path d="M14 46 h72 q8 0 8 9 v14 q0 27 -44 27 q-44 0 -44 -27 v-14 q0 -9 8 -9 z"/></g><circle cx="50" cy="72" r="9" fill="#4f7fb5"/>`);
+  /** The rectangle of so many em around a point. */
+  const around = ([x, y], size, [wide, high]) => [x - (size * wide) / 2, y - (size * high) / 2, size * wide, size * high];
+  const overlaps = ([ax, ay, aw, ah], [bx, by, bw, bh]) => ax < bx + bw && bx < ax + aw && ay < by + bh && by < ay + ah;
+  const isInside = ([ax, ay, aw, ah], [bx, by, bw, bh]) => ax >= bx && ay >= by && ax + aw <= bx + bw && ay + ah <= by + bh;
+  const centre = ([x, y, w, h]) => [x + w / 2, y + h / 2];
 
-  /** Builds the hand for a scene in a layout; nothing, where the robot is not shown. */
-  function build(scene, layout, element) {
-    [made, room, holds, ratio] = [null, layout, "", scene.display_m[0] / scene.display_m[1]];
-    if (scene.arm === "none") return [];
-    const item = element("div", "item"), hand = element("div", "robot-hand", GRIPPER);
-    hand.append(item);
-    // On an upright screen places do not lie as they do around a real arm.
-    const links = scene.arm === "arm" && !room.isUpright ? element("div", "robot-arm", `<svg viewBox="0 0 ${ratio} 1" aria-hidden="true"><path class="under"/><path class="over"/><circle r="0.028"/></svg>`) : null;
-    made = { hand, item, links, at: scene.locations.findIndex(({ kind }) => kind === "robot_hand") };
-    return links ? [links, hand] : [hand];
+  /** What the hand must not cover: places and storages with their names and keys, and whatever else is taken. */
+  function obstacles(scene, room, taken) {
+    const [wide, high] = room.em, spots = [...scene.locations, ...scene.storages];
+    const names = spots.filter(({ kind }) => kind !== "order").map((spot) => {
+      const size = room.nameSize(spot), width = room.widthOf(spot.label, size * wide);
+      return [centre(spot.area)[0] - width / 2, spot.area[1] - 1.4 * size * high, width, 1.4 * size * high];
+    });
+    const keyed = room.isUpright ? [] : scene.buttons.filter(({ does }) => does === "use" || does === "take");
+    const keys = keyed.map(({ does, at }) => (does === "use" ? scene.locations : scene.storages)[at].area).map(([x, y, w, h]) => [x + w - 1.6 * wide, y + h - 2.4 * high, 2.2 * wide, 2.4 * high]);
+    return [...spots.map(({ area }) => area), ...names, ...keys, ...taken];
   }
 
-  /** Position of the elbow, on the side that is nearer to the viewer. */
+  /** Where the hand stands at a place: beside it, as large as there is room, and clear of recipes where that can be. Where there is no room it lies below. */
+  function beside({ area, kind }, room, others, cards) {
+    // What is the robot's, it takes on its own side.
+    const within = [room.sides()[0], [0, 0, 1, 1]].find((zone) => overlaps(zone, area));
+    const [[x, y, w, h], [wide, high], [cx, cy]] = [area, room.em, centre(area)];
+    for (const size of SIZES) {
+      const [across, down] = [wide, high].map((em) => (size / 2 + (kind === "order" ? FRAME : GAP)) * em);
+      const sides = [[x - across, cy, 1, 0], [x + w + across, cy, -1, 0], [cx, y + h + down, 0, -1], [cx, y - down, 0, 1]];
+      for (const taken of [[...others, ...cards], others]) {
+        for (const aside of [0, 0.25, -0.25, 0.5, -0.5]) for (const [left, top, dx, dy] of sides) {
+          const at = [left + (dy ? aside * w : 0), top + (dx ? aside * h : 0)], rect = around(at, size, [wide, high]);
+          if (isInside(rect, within) && !taken.some((other) => overlaps(rect, other))) return { at, size, towards: [dx, dy] };
+        }
+      }
+    }
+    return { at: [cx, y + h], size: 4, towards: [0, -1], below: 1 };
+  }
+
+  /** Builds the robot for a kitchen as it is on the wall, in a layout of it; nothing, where the robot is not shown. */
+  function build(wall, room, { taken, cards }, element) {
+    const scene = room.placed, ratio = scene.display_m[0] / scene.display_m[1];
+    [made, holds] = [null, ""];
+    if (scene.arm === "none") return [];
+    const home = scene.locations.findIndex(({ kind }) => kind === "robot_hand"), others = obstacles(scene, room, taken);
+    // At rest, what it holds is where the contents of its place are.
+    const rests = (area) => {
+      const size = Math.min((1.2 * area[3]) / room.em[1], (1.2 * area[2]) / room.em[0]), [x] = centre(area);
+      return { at: [x - HELD * size * room.em[0], area[1] + 0.5 * size * room.em[1]], size, towards: [1, 0] };
+    };
+    const standing = (spot, index) => (index === home ? rests(spot.area) : beside(spot, room, others, cards));
+    const spots = [...scene.locations, ...scene.storages], from = [...wall.locations, ...wall.storages];
+    stands = spots.map((spot, index) => ({ ...standing(spot, index), from: centre(from[index].area) }));
+    const item = element("div", "item"), gripper = element("div", "gripper", Art.GRIPPER), hand = element("div", "robot-hand", gripper);
+    hand.append(item);
+    const isArm = scene.arm === "arm" && !room.isUpright, base = room.base();
+    const inside = `<path class="under"/><path class="over"/>${isArm ? `<circle class="joint" r=".022"/><circle class="joint" r=".03" cx="${base[0] * ratio}" cy="${base[1]}"/>` : ""}`;
+    const arm = element("div", `robot-arm ${isArm ? "links" : ""}`, `<svg viewBox="0 0 ${ratio} 1" aria-hidden="true">${inside}</svg>`);
+    made = { hand, gripper, item, arm, isArm, base, ratio, em: room.em, wall };
+    const [x, y] = stands[home].from;
+    drawn = null;
+    move(told || { x, y, down: 0 });
+    return [arm, hand];
+  }
+
+  /** Where a pose is in this layout: at a place where the hand stands there, and between places what lies between. */
+  function placed({ x, y }) {
+    const sum = { x: 0, y: 0, size: 0, dx: 0, dy: 0, below: 0 }, [wide, high] = made.wall.display_m;
+    let weights = 0;
+    for (const { from, at, size, towards, below = 0 } of stands) {
+      const weight = 1 / Math.max(1e-6, Math.hypot(((from[0] - x) * wide) / high, from[1] - y)) ** 4;
+      weights += weight;
+      [at[0], at[1], size, ...towards, below].forEach((value, index) => { sum[["x", "y", "size", "dx", "dy", "below"][index]] += weight * value; });
+    }
+    return { x: sum.x / weights, y: sum.y / weights, size: sum.size / weights, turn: Math.atan2(sum.dy, sum.dx), isBelow: sum.below > weights / 2 };
+  }
+
+  /** Position of the elbow, on the robot's side; from above, links that reach up look shorter. */
   function elbow([x, y]) {
-    const [dx, dy] = [x - BASE[0], y - BASE[1]], away = Math.min(Math.hypot(dx, dy), 2 * LINK - 1e-6);
-    const out = Math.sqrt(LINK * LINK - (away * away) / 4) / Math.max(away, 1e-6);
-    return [BASE[0] + dx / 2 + dy * out, BASE[1] + dy / 2 - dx * out];
+    const from = [made.base[0] * made.ratio, made.base[1]], [dx, dy] = [x - from[0], y - from[1]];
+    return [from[0] + 0.5 * dx + 0.26 * dy, from[1] + 0.5 * dy - 0.26 * dx];
+  }
+
+  function draw({ down }, { x, y, size, turn, isBelow }) {
+    const { hand, gripper, item, arm, isArm, base, ratio, em } = made;
+    hand.style.transform = `translate(${(x / em[0]).toFixed(3)}em, ${(y / em[1]).toFixed(3)}em) scale(${((size / 10) * (1.03 - 0.03 * down)).toFixed(3)})`;
+    gripper.style.transform = `rotate(${turn.toFixed(3)}rad)`;
+    item.style.transform = `translate(${(10 * HELD * Math.cos(turn)).toFixed(3)}em, ${(10 * HELD * Math.sin(turn)).toFixed(3)}em)`;
+    hand.classList.toggle("down", down > 0.5);
+    hand.classList.toggle("below", isBelow);
+    const wrist = [(x - 0.34 * size * Math.cos(turn) * em[0]) * ratio, y - 0.34 * size * Math.sin(turn) * em[1]];
+    const bend = isArm ? elbow(wrist) : null, way = [[base[0] * ratio, base[1]], ...(bend ? [bend] : []), wrist].map((point) => point.map((value) => value.toFixed(4)).join(" "));
+    for (const path of arm.querySelectorAll("path")) path.setAttribute("d", `M${way.join(" L")}`);
+    if (bend) ["cx", "cy"].forEach((name, axis) => arm.querySelector(".joint").setAttribute(name, bend[axis].toFixed(4)));
+  }
+
+  /** Draws the pose, which follows the told one frame by frame. */
+  function follow(now) {
+    if (!made) return (ticked = 0);
+    const share = 1 - Math.exp(-Math.min(100, Math.max(0, now - ticked)) / FOLLOWS_MS), goal = told, near = (key) => Math.abs(goal[key] - drawn[key]) < 5e-4;
+    for (const key of ["x", "y", "down"]) drawn[key] += (goal[key] - drawn[key]) * share;
+    const isThere = ["x", "y", "down"].every(near);
+    if (isThere) drawn = { ...goal };
+    draw(drawn, placed(drawn));
+    ticked = isThere ? 0 : now;
+    return isThere || requestAnimationFrame(follow);
   }
 
   function move(pose) {
-    const { x, y, down } = pose;
-    last = pose;
+    told = pose;
     if (!made) return;
-    const [left, top] = room.moved([x, y]);
-    made.hand.style.transform = `translate(${(left / room.em[0]).toFixed(2)}em, ${(top / room.em[1]).toFixed(2)}em) scale(${(1.12 - 0.12 * down).toFixed(3)})`;
-    made.hand.classList.add("there");
-    made.hand.dataset.x = x;
-    made.hand.dataset.y = y;
-    if (!made.links) return;
-    const tip = [x * ratio, y], bend = elbow(tip), way = `M${BASE.join(" ")} L${bend.join(" ")} L${tip.join(" ")}`;
-    for (const path of made.links.querySelectorAll("path")) path.setAttribute("d", way);
-    const joint = made.links.querySelector("circle");
-    joint.setAttribute("cx", bend[0]);
-    joint.setAttribute("cy", bend[1]);
-    made.links.classList.add("there");
+    Object.assign(made.hand.dataset, { x: pose.x, y: pose.y });
+    if (!drawn) {
+      drawn = { ...pose };
+      return draw(drawn, placed(drawn));
+    }
+    if (ticked) return;
+    ticked = performance.now();
+    requestAnimationFrame(follow);
   }
 
-  /** Shows the item that the hand holds, given the contents of all places. */
-  function hold(contents, contentOf) {
-    if (!made) return;
-    const now = JSON.stringify(contents[made.at]);
-    if (now === holds) return;
+  /** Shows what the hand holds. */
+  function hold(what, contentOf) {
+    const now = JSON.stringify(what);
+    if (!made || now === holds) return;
     holds = now;
-    [made.item.innerHTML] = contentOf(contents[made.at], false);
+    const [inside, kind] = contentOf(what, false);
+    made.item.innerHTML = inside;
+    made.hand.dataset.holds = kind;
   }
 
-  /** The kitchen was laid out anew: the hand is where it was. */
-  const again = () => last && move(last);
-
-  return { build, move, again, hold };
+  return { build, move, hold };
 })();

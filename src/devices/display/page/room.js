@@ -62,6 +62,12 @@ const Room = (scene, fontFamily) => {
 
   const table = () => grown(around(areas("place")), [0.03, 0.085, 0.03, 0.03]);
 
+  /** Where the robot's arm comes from: the edge of its side that is nearest to the viewer. */
+  function base() {
+    const [x, y, w, h] = sides()[0];
+    return [x + w / 2, y + h];
+  }
+
   /** The area of a location; for an order, with the frame that a signal draws around it. */
   const framed = ({ kind, area: [x, y, w, h] }) => (kind === "order" ? [x - FRAME, y - FRAME * ratio, w + 2 * FRAME, h + 2 * FRAME * ratio] : [x, y, w, h]);
 
@@ -158,8 +164,8 @@ const Room = (scene, fontFamily) => {
   }
 
   return {
-    isUpright: false, placed: scene, em: [0.01, 0.01 * ratio], moved: (point) => point,
-    widthOf, nameSize: (spot) => 100 * nameSize(spot), sides, table, taken, forPill, forStatus, forRecipe,
+    isUpright: false, placed: scene, em: [0.01, 0.01 * ratio],
+    widthOf, nameSize: (spot) => 100 * nameSize(spot), sides, table, base, taken, forPill, forStatus, forRecipe,
     isRobots, forLesson, enough: 1,
   };
 };

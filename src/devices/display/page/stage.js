@@ -5,8 +5,8 @@
 const Stage = (() => {
   const root = document.getElementById("stage");
   // Higher than wide by so much, the screen shows the layout of upright screens, which is between so wide and so wide for its height.
-  const UPRIGHT = 1.2, NARROW = 0.42, WIDE = 0.5625;
-  let told = null, scene = null, room = null, shown = null, parts = null, words = {}, timeLeft = () => 0;
+  const UPRIGHT = 1.2, NARROW = 0.42, WIDE = 1 / UPRIGHT;
+  let pad = null, told = null, scene = null, room = null, shown = null, parts = null, words = {}, timeLeft = () => 0;
   let marks = { lost: false, ended: false, acts: true, free: false };
 
   function element(kind, className, inside = "") {
@@ -30,12 +30,35 @@ const Stage = (() => {
     return made;
   }
 
+  /** The badge of a button: its key or its gamepad's button, or only the colour of its cap. */
   function key(knob) {
     const named = scene.keys && knob && knob.key;
     if (!knob || (!named && !knob.colour)) return "";
-    const badge = text("kbd", named ? "key" : "key cap", named ? knob.key.toUpperCase() : "");
+    const badge = text("kbd", named ? "key" : "key cap", "");
     if (knob.colour) badge.dataset.colour = knob.colour;
+    if (named) labelBadge(badge, knob);
+    badge.dataset.of = knob.name;
     return badge;
+  }
+
+  function labelBadge(badge, knob) {
+    const isPad = pad && knob.gamepad !== null;
+    badge.classList.toggle("of-pad", Boolean(isPad));
+    if (isPad) badge.innerHTML = Art.pad(knob.gamepad, pad.standard);
+    else badge.textContent = Hands.printedOn(knob);
+  }
+
+  /** Writes all badges anew: the keyboard is known better now, or there is a gamepad. */
+  function label() {
+    if (!scene || !scene.keys) return;
+    for (const badge of root.querySelectorAll(".key:not(.cap)")) labelBadge(badge, scene.buttons.find(({ name }) => name === badge.dataset.of));
+  }
+
+  /** The participant uses the keyboard, or the gamepad: badges show the buttons of that. */
+  function useBadges(kind, standard) {
+    if (kind === (pad ? "pad" : "keys")) return;
+    pad = kind === "pad" ? { standard } : null;
+    label();
   }
 
   function knobOf(does, at) {
@@ -66,7 +89,9 @@ const Stage = (() => {
       const over = Math.max(0, room.widthOf(spot.label, size) - w / room.em[0]) / 2;
       made.style.setProperty("--side", `${(over + 1.2).toFixed(2)}em`);
       name.style.fontSize = `${size.toFixed(3)}em`;
-      made.append(element("div", "furniture", Art.place(shape, wide)), name);
+      // The robot's hand itself lies there, if it is drawn.
+      const isDock = spot.kind === "robot_hand" && scene.arm !== "none";
+      made.append(isDock ? element("div", "dock") : element("div", "furniture", Art.place(shape, wide)), name);
     }
     const content = element("div", "content");
     made.append(content, element("div", "ring"));
@@ -124,6 +149,7 @@ const Stage = (() => {
   function shape() {
     const [wide, high] = told ? told.display_m : [16, 9];
     root.classList.toggle("upright", isUpright());
+    root.style.setProperty("--wide", Upright.wideOf(uprightRatio()));
     root.style.setProperty("--ratio", isUpright() ? uprightRatio() : wide / high);
   }
 
@@ -133,7 +159,6 @@ const Stage = (() => {
     if (!isUpright() && !room.isUpright) return undefined;
     const last = shown;
     build(told);
-    Robot.again();
     return last && show(last, timeLeft);
   }
 
@@ -148,18 +173,18 @@ const Stage = (() => {
     shape();
     Sound.build(scene);
     const kitchen = element("div", "kitchen");
-    const [robot, human] = room.sides(), robots = buildZone("robot", robot, scene.words.robot);
-    kitchen.append(robots, buildZone("human", human, scene.words.human));
+    const [theirs, mine] = room.sides(), robots = buildZone("robot", theirs, scene.words.robot);
+    kitchen.append(robots, buildZone("human", mine, scene.words.human));
     kitchen.append(put(element("section", "zone table"), room.table()));
     const locations = scene.locations.map(buildLocation), storages = scene.storages.map(buildStorage);
     const others = room.taken();
-    kitchen.append(...locations.map((l) => l.made), ...storages.map((s) => s.made), ...buildPills(others));
+    const pills = buildPills(others);
     const tally = room.forStatus(others), all = [...others, tally];
     // A recipe opens near its order; the instruction opens in the largest free area.
     const free = room.forRecipe(all), cards = scene.locations.map(({ kind, area }) => (kind === "order" ? room.forRecipe(all, area) : free));
     const recipe = put(element("div", "recipe"), free);
-    const hand = Robot.build(scene, room, element);
-    kitchen.append(...hand, recipe, Reason.build(element));
+    const robot = Robot.build(told, room, { taken: all, cards }, element);
+    kitchen.append(...robot, ...locations.map((l) => l.made), ...storages.map((s) => s.made), ...pills, recipe, Reason.build(element));
     const sheet = element("div", "sheet"), toast = element("div", "toast"), status = put(Status.build(element), tally), target = element("div", "target", "<i></i>");
     root.append(kitchen, status, sheet, toast, target, ...scene.tags.map((tag) => put(element("div", "tag", Art.tag(tag.rows)), tag.area)));
     const flash = element("div", "flash");
@@ -184,6 +209,7 @@ const Stage = (() => {
     if (part.drawn === now) return;
     const isNew = part.drawn !== null;
     part.drawn = now;
+    if (scene.locations[index].kind === "robot_hand" && scene.arm !== "none") return Robot.hold(what, contentOf);
     const [inside, kind] = contentOf(what, isOrder);
     part.made.dataset.holds = kind;
     part.content.innerHTML = inside;
@@ -291,17 +317,18 @@ const Stage = (() => {
     if (spot) partOf(spot).made.classList.add("intended");
   }
 
-  /** The title of the robot's side says what the robot waits for, if it waits. */
-  function drawWait(waits) {
-    const title = parts.robots.querySelector("h2"), words = waits ? scene.words[`robot waits ${waits}`] : scene.words.robot;
-    if (title.textContent === words) return;
-    title.textContent = words;
+  /** The robot's side says what the robot does if it does not simply work; a stop is seen at a glance. */
+  function drawRobot(does) {
+    if (root.dataset.robot === (does || "") && shown) return;
+    root.dataset.robot = does || "";
+    parts.robots.querySelector("h2").textContent = does ? scene.words[`robot ${does.replace("_", " ")}`] : scene.words.robot;
     fitWords(parts.robots);
   }
 
-  /** What the buttons show of themselves: their keys, the colours of their caps, or nothing. */
+  /** What the buttons show of themselves: their keys, their gamepad's buttons, the colours of their caps, or nothing. */
   function badges() {
     if (room.isUpright) return "";
+    if (scene.keys && pad) return "pad";
     if (scene.keys && scene.buttons.some((knob) => knob.key)) return "keys";
     return scene.buttons.some((knob) => knob.colour) ? "colours" : "";
   }
@@ -324,6 +351,7 @@ const Stage = (() => {
     Probe.end();
     const card = element("div", "card");
     card.append(text("h1", "", scene.words[name] || ""), text("p", "", scene.words[`${name} text`] || ""));
+    if (["welcome", "ready"].includes(stage)) card.append(Readiness.build(scene.words, element));
     // The kitchen is explained during the instruction, so nothing covers it.
     if (stage === "instruction") put(card, parts.free);
     parts.sheet.replaceChildren(card);
@@ -342,6 +370,13 @@ const Stage = (() => {
     parts.target.dataset.is = is;
   }
 
+  /** A signal as it is spoken. */
+  function inWords({ recipe, next, highlight }) {
+    if (recipe) return `${scene.dishes[recipe.dish].label}: ${recipe.items.map((name) => scene.items[name].label).join(", ")}.`;
+    if (next) return next.length ? `${scene.words.proposes} ${pictureOf(scene.buttons[next[0]], shown.contents).label}` : "";
+    return scene.words["says highlight"].replace("#", scene.locations[highlight].label);
+  }
+
   /** Whether a signal is new: sent just now, or explained by another page of the tutorial. */
   const isNewSignal = (sight) => shown && sight.signal && (sight.cue !== shown.cue || (sight.tutorial && JSON.stringify(shown.signal) !== JSON.stringify(sight.signal)));
 
@@ -352,13 +387,15 @@ const Stage = (() => {
   function show(sight, left = () => 0) {
     if (!scene) return;
     timeLeft = left;
-    if (isNewSignal(sight)) Sound.play("signal");
+    if (isNewSignal(sight)) {
+      Sound.play("signal");
+      Sound.say(inWords(sight.signal));
+    } else if (shown && shown.signal && !sight.signal) Sound.say("");
     // During a freeze probe the program sends no contents; afterwards the kitchen is as it was.
     sight.contents.forEach((what, index) => drawLocation(index, what));
     drawPresses(sight);
     drawIntention(sight.intention);
-    drawWait(sight.robot_waits);
-    if (sight.contents.length) Robot.hold(sight.contents, contentOf);
+    drawRobot(sight.robot_does);
     if (!shown || JSON.stringify(shown.signal) !== JSON.stringify(sight.signal)) drawSignal(sight.signal, sight.contents);
     if (!shown || JSON.stringify(onSheet(shown)) !== JSON.stringify(onSheet(sight))) drawSheet(sight, left);
     drawTarget(sight);
@@ -376,10 +413,22 @@ const Stage = (() => {
     marks = { ...marks, ...change };
     root.classList.toggle("lost", marks.lost);
     if (!parts) return;
-    const role = marks.acts ? "" : marks.free ? scene.words.free : scene.words.watches;
-    const said = marks.ended ? scene.words.ended : marks.lost ? scene.words.lost : role;
-    parts.toast.textContent = said;
-    parts.toast.classList.toggle("open", Boolean(said));
+    const role = marks.acts || marks.watches ? "" : marks.free ? scene.words.free : scene.words.watches;
+    const isLost = marks.lost && !marks.ended;
+    parts.toast.replaceChildren(...(isLost ? [text("b", "", scene.words.lost), text("span", "", scene.words["lost text"])] : [marks.ended ? scene.words.ended : role]));
+    parts.toast.className = `toast ${isLost ? "open says-lost" : parts.toast.textContent ? "open" : ""}`;
+  }
+
+  /** What was pressed does nothing, in a trial. */
+  function sayNothing() {
+    if (!shown || shown.stage !== "running" || !marks.acts) return;
+    Reason.say(scene.words.nothing, parts.kitchen, { room, put, replay, text });
+  }
+
+  /** A press without a connection has no effect, and the page says so once more. */
+  function refuse() {
+    if (parts) replay(parts.toast, "shakes");
+    Sound.play("effectless");
   }
 
   /** Receives the texts of the page, which arrive before anything else. */
@@ -425,5 +474,5 @@ const Stage = (() => {
     return [(x - box.left) / box.width, (y - box.top) / box.height];
   }
 
-  return { build, show, resize, flash, mark, greet, askCode, point, isUpright, scene: () => scene, shown: () => shown };
+  return { build, show, resize, flash, mark, refuse, sayNothing, label, useBadges, greet, askCode, point, isUpright, scene: () => scene, shown: () => shown };
 })();

@@ -1,10 +1,10 @@
 "use strict";
 // The layout of upright screens, such as a phone in the hand: the areas of the kitchen below one another in reading order, all that the
 // person touches at least 44 pixels high on a width of 390. Orders on top, below them room for recipes and texts, the robot's side small,
-// the shared places, the person's side. It answers the same questions as Room. Lengths are in em: the stage is 48 wide.
+// the shared places, the person's side. It answers the same questions as Room. Lengths are in em: the stage is 48 wide, or wider where it is less high.
 
 const Upright = (wall, fontFamily, ratio) => {
-  const WIDE = 48, BETWEEN = 0.8, EDGE = 0.8;
+  const WIDE = Upright.wideOf(ratio), BETWEEN = 0.8, EDGE = 0.8;
   // Height of a name above its place; sizes of names and words; least and most height of what is touched; least height for recipes and texts.
   const NAME = 1.9, WORDS = 1.45, TOUCH = [6.2, 8.4], TEXTS = 15;
   // Width and height of what the robot has, room below what is touched, height of the title of the robot's side.
@@ -129,22 +129,13 @@ const Upright = (wall, fontFamily, ratio) => {
     return [free, [free[0], free[1], free[2], zones.theirs[1] + zones.theirs[3] - free[1]]];
   }
 
-  /** A point of the wall's display here: each place is where it is here, and between places lies what lies between them there. */
-  function moved([x, y]) {
-    let weights = 0, at = [0, 0];
-    const pairs = [...scene.locations, ...scene.storages].map((spot, index) => [spot.area, [...placed.locations, ...placed.storages][index].area]);
-    for (const [[ax, ay, aw, ah], [bx, by, bw, bh]] of pairs) {
-      const away = Math.hypot(((ax + aw / 2 - x) * wall.display_m[0]) / wall.display_m[1], ay + ah / 2 - y), weight = 1 / Math.max(1e-6, away) ** 4;
-      weights += weight;
-      at = [at[0] + weight * (bx + bw / 2), at[1] + weight * (by + bh / 2)];
-    }
-    return [at[0] / weights, at[1] / weights];
-  }
-
   return {
-    isUpright: true, placed, em: [1 / WIDE, 1 / high], moved, nameSize, forPill, forLesson,
+    isUpright: true, placed, em: [1 / WIDE, 1 / high], nameSize, forPill, forLesson,
     widthOf: (said, size) => measure(said, size),
-    sides: () => [zones.theirs, zones.mine], table: () => zones.places, taken: () => [], enough: 0.8,
+    sides: () => [zones.theirs, zones.mine], table: () => zones.places, base: () => [zones.theirs[0], zones.theirs[1] + zones.theirs[3] / 2], taken: () => [], enough: 0.8,
     forStatus: () => rect(WIDE - EDGE - 18, top.mine + 0.3, 17, NAME), forRecipe: () => free,
   };
 };
+
+// How wide the stage is, in em; it is never less high than the layout needs.
+Upright.wideOf = (ratio) => Math.max(48, 85 * ratio);

@@ -1,0 +1,55 @@
+"use strict";
+/** Before a trial: whether screen, delay and sound are as they should be, and a button for the full screen. */
+const Readiness = (() => {
+  // As the console's check of the display has it.
+  const SMALL_PX = [1280, 720], SLOW_MS = 30;
+  let took = null, made = null, words = {};
+
+  const filled = (said, ...values) => values.reduce((text, value) => text.replace("#", value), said || "");
+
+  function line(said, isFine, does) {
+    const part = document.createElement(does ? "button" : "span");
+    part.className = isFine ? "fine" : does ? "" : "poor";
+    part.textContent = said;
+    if (does) part.addEventListener("click", does);
+    return part;
+  }
+
+  function draw() {
+    if (!made) return;
+    const [wide, high] = [window.innerWidth, window.innerHeight].map((length) => Math.round(length * devicePixelRatio));
+    // Who holds an upright screen in the hand reads it from nearby.
+    const isSmall = wide >= high && (wide < SMALL_PX[0] || high < SMALL_PX[1]);
+    const lines = [line(filled(words[isSmall ? "ready screen small" : "ready screen"], wide, high), !isSmall)];
+    if (took !== null) lines.push(line(filled(words["ready delay"], Math.round(took)), took <= SLOW_MS));
+    if (Sound.isOn()) lines.push(Sound.hasVoice() ? line(words["ready sound"], false, hear) : line(words["ready voice off"], false));
+    if (document.fullscreenEnabled && !document.fullscreenElement) lines.push(line(words.fullscreen, false, () => document.documentElement.requestFullscreen().catch(() => {})));
+    made.replaceChildren(...lines);
+  }
+
+  /** A touch is what lets a page sound, so that the sound is on from now on. */
+  function hear(event) {
+    Sound.play("signal");
+    Sound.say(words.ready);
+    event.currentTarget.textContent = words["ready sound on"];
+    event.currentTarget.className = "fine";
+  }
+
+  /** The list of what is ready, for a card. */
+  function build(page, element) {
+    words = page;
+    made = element("p", "readiness");
+    draw();
+    return made;
+  }
+
+  /** The connection took so long to answer. */
+  function note(ms) {
+    const isNew = took === null || Math.round(ms) !== Math.round(took);
+    took = ms;
+    if (isNew && made && !made.querySelector("button.fine")) draw();
+  }
+
+  for (const kind of ["resize", "fullscreenchange"]) window.addEventListener(kind, draw);
+  return { build, note };
+})();

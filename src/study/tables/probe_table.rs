@@ -90,7 +90,7 @@ fn question<'a>() -> Vec<ProbeColumn<'a>> {
         ProbeRow::column("kind", "", kind, |row| row.question.kind.name().into()),
         ProbeRow::column("aspect", "", "as in beliefs; of level 2 the kind", |row| (&row.question.aspect).into()),
         ProbeRow::column("inclusion", "probability", "probability with which the question was drawn", |row| {
-            row.question.inclusion.into()
+            row.question.asked.inclusion.into()
         }),
         ProbeRow::column("weight", "", "1 / inclusion", |row| row.question.weight().into()),
         ProbeRow::column("in_main_results", "", main, |row| row.question.is_counted().into()),
@@ -98,13 +98,17 @@ fn question<'a>() -> Vec<ProbeColumn<'a>> {
 }
 
 fn answer<'a>() -> Vec<ProbeColumn<'a>> {
-    let answer = "the answered value; empty: \"I don't know\", or none in time";
+    let answer =
+        "the answered value; \"something else\": none that was shown; empty: \"I don't know\", or none in time";
     let response = "answered (a value), unsure (\"I don't know\"), skipped (the wizard skipped the rest of the probe) or missing (nothing in time)";
     let wrong = "whether the answer differs from the truth; \"I don't know\" does; empty: no answer, or no truth";
     vec![
-        ProbeRow::column("truth", "", "true value; of level 2 what came next, empty: nothing did", |row| {
-            row.question.truth.as_ref().into()
-        }),
+        ProbeRow::column(
+            "truth",
+            "",
+            "the right answer: the true value, or \"something else\" where that was not shown (so in all columns); of level 2 what came next, empty: nothing did",
+            |row| row.question.truth.as_ref().into(),
+        ),
         ProbeRow::column("answer", "", answer, |row| row.question.answer().into()),
         ProbeRow::column("response", "", response, |row| row.response().into()),
         ProbeRow::column("wrong", "", wrong, |row| row.question.is_wrong().into()),

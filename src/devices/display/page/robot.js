@@ -61,5 +61,5 @@ const Robot = (() => {
   /** The kitchen was laid out anew: the hand is where it was. */
   const again = () => last && move(last);
 
-  return { build, move, again, hold };
+  return { build, move, again, hold, pose: () => last };
 })();

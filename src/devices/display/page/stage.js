@@ -317,7 +317,7 @@ const Stage = (() => {
     if (stage === "questionnaire" && sight.question) return Questions.draw(parts.sheet, sight.question, scene.words, { element, text });
     if (sight.tutorial) {
       const recipe = sight.signal && sight.signal.recipe, areas = room.forLesson(parts.all, recipe && parts.cards[recipe.order], sight.tutorial.frames);
-      return Tutorial.draw(parts.sheet, sight.tutorial, { scene, areas, enough: room.enough, badges: badges(), element, text, put, partOf, fitWords });
+      return Tutorial.draw(parts.sheet, sight.tutorial, { scene, areas, enough: room.enough, badges: badges(), element, text, put, partOf, fitWords, contentOf, draws: drawContents, contents: sight.contents });
     }
     Tutorial.end();
     if (sight.probe) return Probe.draw(parts.sheet, sight.probe, left, { scene, element, text, contentOf });
@@ -328,6 +328,11 @@ const Stage = (() => {
     if (stage === "instruction") put(card, parts.free);
     parts.sheet.replaceChildren(card);
     if (stage === "instruction") fitWords(card);
+  }
+
+  function drawContents(contents) {
+    contents.forEach((what, index) => drawLocation(index, what));
+    if (contents.length) Robot.hold(contents, contentOf);
   }
 
   /** Shows the target of a gaze accuracy check, alone on the screen, so that nothing else attracts the eyes. */
@@ -354,11 +359,10 @@ const Stage = (() => {
     timeLeft = left;
     if (isNewSignal(sight)) Sound.play("signal");
     // During a freeze probe the program sends no contents; afterwards the kitchen is as it was.
-    sight.contents.forEach((what, index) => drawLocation(index, what));
+    drawContents(sight.contents);
     drawPresses(sight);
     drawIntention(sight.intention);
     drawWait(sight.robot_waits);
-    if (sight.contents.length) Robot.hold(sight.contents, contentOf);
     if (!shown || JSON.stringify(shown.signal) !== JSON.stringify(sight.signal)) drawSignal(sight.signal, sight.contents);
     if (!shown || JSON.stringify(onSheet(shown)) !== JSON.stringify(onSheet(sight))) drawSheet(sight, left);
     drawTarget(sight);
@@ -425,5 +429,5 @@ const Stage = (() => {
     return [(x - box.left) / box.width, (y - box.top) / box.height];
   }
 
-  return { build, show, resize, flash, mark, greet, askCode, point, isUpright, scene: () => scene, shown: () => shown };
+  return { build, show, resize, flash, mark, greet, askCode, point, isUpright, scene: () => scene, shown: () => shown, asks: () => Boolean(shown && shown.probe) || Tutorial.practises() };
 })();

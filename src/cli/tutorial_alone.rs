@@ -14,6 +14,7 @@ use crate::run::series;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::plan::Study;
 use tomcom_session::settings::{ArmKind, GazeSource, ParticipantKind};
+use tomcom_session::wall_display::DisplaySpec;
 
 /// Runs the participant's tutorial alone, on the display.
 ///
@@ -25,9 +26,9 @@ pub(super) struct TutorialArgs {
     /// The session file, whose [plan] names the tutorial.
     #[arg(default_value = "sessions/study.toml")]
     session: PathBuf,
-    /// The display's language, instead of the session file's: en or de. The tutorial is read in that language, if it is
+    /// The display's language, instead of the session file's. The tutorial is read in that language, if it is
     /// there.
-    #[arg(long, value_parser = ["en", "de"])]
+    #[arg(long, value_parser = DisplaySpec::LANGUAGES)]
     language: Option<String>,
     /// The participant's code, never a name.
     #[arg(long, default_value = "P00")]

@@ -5,7 +5,7 @@
 //!   [`plan`], [`questionnaire`] and [`tutorial`].
 //! - Events and state: [`event`], `session_state`, [`header`].
 //! - Preconditions and effects of events: [`admit`] and [`mod@apply`]; of one feature each: [`gaze_check`],
-//!   [`gaze_samples`], [`protocol`], [`tutorial`], [`probes`] with [`probe_sampling`], [`offers`], [`proposals`].
+//!   [`gaze_samples`], [`protocol`], [`tutorial`], [`probes`] with [`probe_settings`] and [`probe_sampling`], [`offers`], [`proposals`].
 //! - What runs and reads sessions: [`engine`], [`headless`], [`log`], [`files`], [`replay`], [`verify`].
 //! - What is computed beside a session: [`follower`] (judgements, the belief estimate), [`advisor`] (advice), [`watcher`]
 //!   (advice that other senders would have given), [`history`] (words and series), [`wizard_log`].
@@ -33,6 +33,7 @@ pub mod person_code;
 pub mod plan;
 pub mod preflight_checks;
 pub mod probe_sampling;
+pub mod probe_settings;
 pub mod probes;
 pub mod proposals;
 pub mod protocol;

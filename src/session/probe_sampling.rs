@@ -6,6 +6,11 @@
 //! all aspects have the same probability. The inclusion probability of each drawn aspect is recorded, so that an
 //! analysis can weight answers by its inverse (Horvitz and Thompson 1952).
 //!
+//! A question shows what could be there, at most [`MOST_CHOICES`] answers: nothing comes first, then the others in random
+//! order. Where more is possible, what is shown depends on the location and on the orders, which everybody sees, and on
+//! chance; not on what is there, nor on what the recipes say beside the ingredients. The last answer is then
+//! [`SOMETHING_ELSE`], which is right where the truth is not shown.
+//!
 //! With the setting `level_2` one further question is about what happens next (level 2 of situation awareness).
 //!
 //! Questions are drawn by systematic sampling of fixed size over the aspects in random order (Madow 1949), whose
@@ -14,11 +19,20 @@
 use rand::RngExt;
 
 use crate::Session;
-use crate::probes::{ProbeQuestion, ProbeSpec, ProbeSubject};
+use crate::probe_settings::ProbeSpec;
+use crate::probes::{ProbeQuestion, ProbeSubject};
 use tomcom_core::base::rng::{Stream, shuffle, stream};
-use tomcom_core::kitchen::{Agent, AspectId, AspectKind, DishId, Kitchen, LocationId, OrderContent};
+use tomcom_core::kitchen::{
+    Agent, AspectId, AspectKind, Content, ContentId, DishId, Kitchen, LocationId, OrderContent, State,
+};
 
 const STRATA: usize = 4;
+/// So many can be looked through in the time of a question.
+const MOST_CHOICES: usize = 12;
+/// The answer that stands for all that a question does not show, by its name in the log.
+pub const SOMETHING_ELSE: &str = "something else";
+/// The answers that say that nothing is there: of places, and of orders.
+const NOTHING: [&str; 2] = ["empty", "none"];
 
 /// `is_wrong`: for each state aspect, whether the belief is wrong by the estimate; `None` in a blind probe.
 pub fn questions(session: &Session, spec: &ProbeSpec, probe: u32, is_wrong: Option<&[bool]>) -> Vec<ProbeQuestion> {
@@ -40,7 +54,7 @@ pub fn questions(session: &Session, spec: &ProbeSpec, probe: u32, is_wrong: Opti
     let inclusion = inclusions(&shares, number, spec.least_inclusion);
     let mut drawn = systematic(&inclusion, number, random.random());
     shuffle(&mut drawn, &mut random);
-    let questions = drawn.into_iter().map(|index| question(kitchen, asked[index], inclusion[index], &mut random));
+    let questions = drawn.into_iter().map(|index| question(session, asked[index], inclusion[index], &mut random));
     let mut questions: Vec<ProbeQuestion> = questions.collect();
     if spec.level_2 {
         questions.push(what_next(session, &mut random));
@@ -58,9 +72,53 @@ fn what_next(session: &Session, random: &mut Stream) -> ProbeQuestion {
     };
     let inclusion = 1.0 / subjects.len() as f64;
     let about = subjects[random.random_range(0..subjects.len())].clone();
-    let mut choices = labels(kitchen, &about);
-    shuffle(&mut choices, random);
+    let choices = choices(kitchen, session.state, &about, random);
     ProbeQuestion { about, choices, inclusion }
+}
+
+/// What a question shows, by the names in the log.
+fn choices(kitchen: &Kitchen, state: State, about: &ProbeSubject, random: &mut Stream) -> Vec<String> {
+    let mut others = labels(kitchen, about);
+    let nothing: Vec<String> = others.extract_if(.., |label| NOTHING.contains(&label.as_str())).collect();
+    shuffle(&mut others, random);
+    let room = MOST_CHOICES - nothing.len();
+    let mut else_ = Vec::new();
+    if others.len() > room {
+        others.sort_by_key(|label| implausibility(kitchen, state, about, label));
+        others.truncate(room - 1);
+        shuffle(&mut others, random);
+        else_.push(SOMETHING_ELSE.to_string());
+    }
+    [nothing, others, else_].concat()
+}
+
+/// Less plausible contents have higher numbers. Plausible is what is made of the ingredients of one current order, in
+/// whichever state; and of that what the location is for: on the board what is stacked, elsewhere single items and
+/// dishes.
+fn implausibility(kitchen: &Kitchen, state: State, about: &ProbeSubject, label: &str) -> u8 {
+    let ProbeSubject::Location { location } = about else { return 0 };
+    let Some(id) = kitchen.content_named(label) else { return 0 };
+    let content = kitchen.content(id);
+    let ingredients = |content: &Content| content.items.iter().map(|item| kitchen.content(*item).ingredient).collect();
+    let own: Vec<Option<usize>> = ingredients(content);
+    let is_ordered = kitchen.orders.iter().any(|&order| {
+        let OrderContent::Dish(dish) = state.order(order) else { return false };
+        let wanted: Vec<Option<usize>> = ingredients(kitchen.content(kitchen.dish(dish).stack()));
+        own.iter().all(|one| wanted.contains(one))
+    });
+    let is_stacked = |&other: &ContentId| kitchen.stacked(id, other).or(kitchen.stacked(other, id)).is_some();
+    let is_for_it = match kitchen.location_named(location) == Some(kitchen.board) {
+        true => content.is_stack() || (0..kitchen.contents.len()).any(|other| is_stacked(&ContentId(other as u8))),
+        false => !content.is_stack() || content.is_dish,
+    };
+    2 * u8::from(!is_ordered) + u8::from(!is_for_it)
+}
+
+/// The question about a location in a tutorial, whose kitchen is in this state.
+pub fn practice(session: &Session, state: State, location: &str) -> ProbeQuestion {
+    let about = ProbeSubject::Location { location: location.to_string() };
+    let mut random = stream(session.spec.seed, "question of the tutorial", 0);
+    ProbeQuestion { choices: choices(&session.kitchen, state, &about, &mut random), about, inclusion: 1.0 }
 }
 
 /// All possible answers, by their names in the log; none if the kitchen does not have what the question is about.
@@ -143,15 +201,14 @@ fn systematic(inclusion: &[f64], number: usize, start: f64) -> Vec<usize> {
     drawn
 }
 
-/// With its choices in random order.
-fn question(kitchen: &Kitchen, id: AspectId, inclusion: f64, random: &mut Stream) -> ProbeQuestion {
+fn question(session: &Session, id: AspectId, inclusion: f64, random: &mut Stream) -> ProbeQuestion {
+    let kitchen = &session.kitchen;
     let aspect = &kitchen.aspects[id.index()];
     let about = match aspect.kind {
         AspectKind::Location(location) => ProbeSubject::Location { location: kitchen.location(location).name.clone() },
         AspectKind::Recipe(dish) => ProbeSubject::Recipe { dish: kitchen.dish(dish).name.clone() },
     };
-    let mut choices = labels(kitchen, &about);
-    shuffle(&mut choices, random);
+    let choices = choices(kitchen, session.state, &about, random);
     // The inclusion probability is rounded as in the log, because the analysis divides by the recorded value.
     ProbeQuestion { about, choices, inclusion: (inclusion * 1e9).round() / 1e9 }
 }
@@ -168,12 +225,14 @@ pub fn aspect(kitchen: &Kitchen, about: &ProbeSubject) -> Option<AspectId> {
     }
 }
 
-/// Whether a recorded question fits this kitchen, with all its choices.
+/// Whether a recorded question fits this kitchen: its choices are possible answers, each once, and stand for all.
 pub(super) fn fits(kitchen: &Kitchen, question: &ProbeQuestion) -> bool {
     let is_chance = question.inclusion > 0.0 && question.inclusion <= 1.0;
-    let labels = labels(kitchen, &question.about);
+    let (labels, choices) = (labels(kitchen, &question.about), &question.choices);
+    let is_first = |index: usize| !choices[..index].contains(&choices[index]);
     is_chance
         && !labels.is_empty()
-        && labels.len() == question.choices.len()
-        && labels.iter().all(|label| question.choices.contains(label))
+        && (0..choices.len()).all(is_first)
+        && choices.iter().all(|choice| choice == SOMETHING_ELSE || labels.contains(choice))
+        && labels.iter().all(|label| choices.iter().any(|choice| choice == question.choice_for(label)))
 }

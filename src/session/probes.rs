@@ -9,116 +9,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::admit::unless;
 use crate::apply::{pause_clock, resume_clock};
-use crate::settings::SettingError;
+use crate::probe_sampling::SOMETHING_ELSE;
+use crate::probe_settings::ProbeSpec;
 use crate::wall_display::AnswerDevice;
 use crate::{Event, Session, SessionSpec, TimelineEvent, TimestampedEvent, TrialPhase, probe_sampling};
 use tomcom_core::base::rng::{Stream, shuffle, stream};
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::Kitchen;
-
-/// `[probes]` of a session file; without it there are no freeze probes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct ProbeSpec {
-    /// Number of scheduled probes.
-    pub per_trial: u32,
-    /// Least time before the first probe and between two, on the trial's clock.
-    pub apart_s: f64,
-    /// Time after a signal or a probe in which none begins, on the trial's clock.
-    pub after_signal_s: f64,
-    /// Longest time for which a probe waits while it may not begin, on the trial's clock; then it is cancelled.
-    pub wait_s: f64,
-    /// Time for all questions of a probe.
-    pub limit_s: f64,
-    /// Count-down before the task continues.
-    pub count_down_s: f64,
-    pub least_questions: u32,
-    pub most_questions: u32,
-    /// Share of blind probes, whose questions are chosen without the belief estimate.
-    pub blind_share: f64,
-    /// Least inclusion probability of any question.
-    pub least_inclusion: f64,
-    /// Probability, for the belief filter, that the participant looks at a place because a question was about it.
-    pub teaches: f64,
-    /// Whether the participant also reports the confidence in each answer.
-    pub confidence: bool,
-    /// Whether a probe can also ask what happens next (level 2 of situation awareness).
-    pub level_2: bool,
-    /// Names of locations, and recipes as "recipe of DISH", about which nothing is asked.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub leave_out: Vec<String>,
-}
-
-impl Default for ProbeSpec {
-    fn default() -> Self {
-        ProbeSpec {
-            per_trial: 4,
-            apart_s: 60.0,
-            after_signal_s: 10.0,
-            wait_s: 15.0,
-            limit_s: 25.0,
-            count_down_s: 3.0,
-            least_questions: 2,
-            most_questions: 4,
-            blind_share: 0.5,
-            least_inclusion: 0.05,
-            teaches: 0.0,
-            confidence: false,
-            level_2: false,
-            leave_out: Vec::new(),
-        }
-    }
-}
-
-impl ProbeSpec {
-    pub(crate) fn check(&self, trial_s: f64) -> Result<(), SettingError> {
-        let ProbeSpec { per_trial, apart_s, wait_s, least_questions, most_questions, .. } = *self;
-        if least_questions > most_questions {
-            let found = format!("least_questions = {least_questions}, and most_questions = {most_questions}");
-            return Err(SettingError::new("probes.least_questions", found, "no more than most_questions"));
-        }
-        let needs_s = f64::from(per_trial) * apart_s + wait_s;
-        if per_trial > 0 && needs_s > trial_s {
-            let found = format!(
-                "per_trial = {per_trial}, which takes {needs_s} s with apart_s = {apart_s} and wait_s = {wait_s}, in a trial of \
-                 {trial_s} s"
-            );
-            let remedy = "fewer probes, a smaller apart_s under [probes], or more seconds under [trial]";
-            return Err(SettingError::new("probes.per_trial", found, remedy));
-        }
-        Ok(())
-    }
-
-    /// The kitchen must have what the settings name, and enough state aspects for the questions.
-    pub fn check_kitchen(&self, kitchen: &Kitchen) -> Result<(), SettingError> {
-        let is_there = |name: &String| kitchen.aspects.iter().any(|aspect| aspect.name == *name);
-        if let Some(name) = self.leave_out.iter().find(|name| !is_there(name)) {
-            let found = format!("leave_out = \"{name}\", which the kitchen does not have");
-            let remedy = "names of the layout's locations, or \"recipe of DISH\"";
-            return Err(SettingError::new("probes.leave_out", found, remedy));
-        }
-        let asked = kitchen.aspects.iter().filter(|aspect| self.asks_about(&aspect.name, aspect.labels.len())).count();
-        if (self.most_questions as usize) > asked {
-            let found =
-                format!("most_questions = {}, and {asked} locations and recipes to ask about", self.most_questions);
-            return Err(SettingError::new("probes.most_questions", found, "no more questions than that"));
-        }
-        if self.least_inclusion * asked as f64 > f64::from(self.least_questions) {
-            let found = format!(
-                "least_inclusion = {} for each of {asked} locations and recipes, in probes with least_questions = {}",
-                self.least_inclusion, self.least_questions
-            );
-            let remedy = format!("at most {:.3}, or more questions", f64::from(self.least_questions) / asked as f64);
-            return Err(SettingError::new("probes.least_inclusion", found, remedy));
-        }
-        Ok(())
-    }
-
-    /// `values`: number of the aspect's possible values.
-    pub(crate) fn asks_about(&self, aspect: &str, values: usize) -> bool {
-        values > 1 && !self.leave_out.iter().any(|name| name == aspect)
-    }
-}
 
 /// The task stands still, and the participant answers questions about the participant's beliefs (SAGAT, Endsley 1988).
 /// Probes have numbers from 1 within a trial, scheduled and requested ones together; questions have numbers from 1
@@ -181,11 +77,22 @@ pub enum ProbeEvent {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ProbeQuestion {
     pub about: ProbeSubject,
-    /// Possible answers, by their names in the log, in the order in which they are shown.
+    /// The answers that are shown, by their names in the log, in the order in which they are shown; with
+    /// [`SOMETHING_ELSE`] for all others, if these are not all.
     pub choices: Vec<String>,
     /// Probability with which this question was drawn, given the settings, the session so far, and the number of
     /// questions.
     pub inclusion: f64,
+}
+
+impl ProbeQuestion {
+    /// The choice that stands for this value: itself, if it is shown.
+    pub fn choice_for<'a>(&self, value: &'a str) -> &'a str {
+        match self.choices.iter().any(|choice| choice == value) {
+            false if self.choices.iter().any(|choice| choice == SOMETHING_ELSE) => SOMETHING_ELSE,
+            _ => value,
+        }
+    }
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -255,7 +162,7 @@ impl ProbeEndReason {
     pub fn words(self) -> &'static str {
         match self {
             ProbeEndReason::Answered => "all questions of the probe are answered",
-            ProbeEndReason::TimeOver => "the probe's time is over",
+            ProbeEndReason::TimeOver => "the questions are over, and not all are answered in time",
             ProbeEndReason::Skipped => "the wizard skipped the other questions",
             ProbeEndReason::TrialEnded => "the trial is over",
         }
@@ -442,17 +349,15 @@ fn in_probe(session: &Session, spec: &ProbeSpec, open: &StartedProbe) -> Option<
         return closes(now, ProbeEndReason::Skipped);
     }
     let next = open.shown.map_or(0, |shown| shown + 1);
-    let asked = match open.shown {
-        None => when(open.begun, BLANK_S),
-        Some(_) => now,
+    let at = match open.question() {
+        _ if open.shown.is_none() => when(open.begun, BLANK_S),
+        Some(_) => when(open.asked_at, spec.limit_s),
+        None => now,
     };
-    let limit = when(open.begun, spec.limit_s);
-    if open.question().is_some() || limit < asked {
-        return closes(limit, ProbeEndReason::TimeOver);
-    }
     match next < open.questions.len() {
-        true => Some((asked, DueProbeEvent::Event(ProbeEvent::Asked { probe, question: next as u32 + 1 }))),
-        false => closes(now, ProbeEndReason::Answered),
+        true => Some((at, DueProbeEvent::Event(ProbeEvent::Asked { probe, question: next as u32 + 1 }))),
+        false if open.answers.iter().all(Option::is_some) => closes(at, ProbeEndReason::Answered),
+        false => closes(at, ProbeEndReason::TimeOver),
     }
 }
 
@@ -526,7 +431,7 @@ pub(crate) fn admit(session: &Session, event: &ProbeEvent) -> Result<(), &'stati
         ProbeEvent::Asked { probe, question } => {
             let open = opened(session, *probe)?;
             let next = open.shown.map_or(1, |shown| shown as u32 + 2);
-            unless(open.question().is_none() && *question == next, "another question of the probe comes next")?;
+            unless(*question == next, "another question of the probe comes next")?;
             unless(*question as usize <= open.questions.len(), "the probe has no question with this number")
         }
         ProbeEvent::Answered { probe, question, answer, confidence, .. } => {

@@ -250,6 +250,10 @@ fn check_options(item: &QuestionnaireItem, line: &'static str) -> Result<(), Wro
         let remedy = "a short id of letters, digits, - and _, such as \"left\"";
         return Err(("options", format!("the option \"{}\"", option.id), remedy));
     }
+    if let Some(option) = options.iter().find(|option| option.alone && !item.several) {
+        let remedy = "alone in items with several = true: else every option stands alone";
+        return Err(("options", format!("alone in the option \"{}\"", option.id), remedy));
+    }
     let is_twice = |&index: &usize| options[..index].iter().any(|one| one.id == options[index].id);
     match (1..options.len()).find(is_twice) {
         Some(index) => Err(("options", format!("the option \"{}\" twice", options[index].id), "each option once")),
@@ -330,6 +334,9 @@ pub struct ItemOption {
     /// In logs and tables, the same in all languages.
     pub id: String,
     pub text: String,
+    /// Whether no other option can be chosen beside it, where several can: "nothing", "none of these".
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub alone: bool,
 }
 
 /// With the settings of the item's kind.
@@ -404,7 +411,9 @@ impl<'a> AnswerFormat<'a> {
             (AnswerFormat::Choice { options, several: true }, AnswerValue::Options(ids)) => {
                 unless(ids.iter().all(|id| is_option(options, id)), "the item has no option with this name")?;
                 let twice = |index: usize| ids[..index].contains(&ids[index]);
-                unless(!(1..ids.len()).any(twice), "the answer has an option twice")
+                unless(!(1..ids.len()).any(twice), "the answer has an option twice")?;
+                let is_alone = |option: &ItemOption| option.alone && ids.contains(&option.id);
+                unless(ids.len() < 2 || !options.iter().any(is_alone), "the answer has an option that stands alone")
             }
             _ => Err("the item takes answers of another kind"),
         }
@@ -418,10 +427,13 @@ impl<'a> AnswerFormat<'a> {
             return Some(AnswerValue::Text(chosen.clone()));
         }
         let before = given.map_or(&[][..], AnswerValue::options);
+        let is_taken_back = before.contains(chosen);
         // The chosen ids keep the order of the item's options, whatever the order in which they were chosen.
-        let is_chosen = |id: &String| before.contains(id) != (id == chosen);
-        let ids = options.iter().map(|option| &option.id).filter(|id| is_chosen(id));
-        Some(AnswerValue::Options(ids.cloned().collect()))
+        let stays = |option: &ItemOption| {
+            before.contains(&option.id) && (is_taken_back || !(option.alone || options[index].alone))
+        };
+        let is_chosen = |option: &&ItemOption| stays(option) != (option.id == *chosen);
+        Some(AnswerValue::Options(options.iter().filter(is_chosen).map(|option| option.id.clone()).collect()))
     }
 
     /// Options by their texts, numbers with their unit.

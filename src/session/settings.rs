@@ -18,7 +18,7 @@ use tomcom_core::mind::model::{HumanModel, HumanModelName};
 use tomcom_people::participant::population::Population;
 use tomcom_people::wizard::{WizardKind, WizardSpec};
 
-pub use crate::probes::ProbeSpec;
+pub use crate::probe_settings::ProbeSpec;
 pub use crate::stream_settings::{GazeOrigin, GazeUnit, LslGazeSpec, LslOutlet, LslSpec};
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

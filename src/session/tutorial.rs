@@ -3,13 +3,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::Session;
 use crate::admit::unless;
 use crate::plan::PhaseSpec;
+use crate::probes::ProbeQuestion;
 use crate::settings::{SettingError, is_code};
+use crate::{Session, probe_sampling};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::rules::NoEffectReason;
-use tomcom_core::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
+use tomcom_core::kitchen::{Agent, AspectId, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
 
 /// For recipe cards, in seconds.
 const LONGEST_S: f64 = 3600.0;
@@ -43,6 +44,10 @@ pub enum TutorialStepKind {
     Order,
     /// It has one right choice.
     Question,
+    /// The robot's hand moves as in a trial: it presses buttons one after another, again and again.
+    Robot,
+    /// A question of a freeze probe, to practise; left out where the session has no probes.
+    Probe,
 }
 
 /// One page on the participant's display.
@@ -58,7 +63,8 @@ pub struct TutorialStep {
     /// What the page frames: locations, the human's buttons, or "human" and "robot" for their areas.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub point_at: Vec<String>,
-    /// With `press` and `order`: the human's buttons, in the order in which the participant has to press them.
+    /// With `press` and `order`: the human's buttons, in the order in which the participant has to press them; with
+    /// `robot`: the robot's.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub presses: Vec<String>,
     /// With `order`, with a signal that shows a recipe, and with a text that explains orders.
@@ -85,11 +91,19 @@ pub struct TutorialStep {
     /// Shown after a wrong choice, before the question is asked again.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub explanation: Option<String>,
+    /// With `probe`: the location that is asked about.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub about: Option<String>,
 }
 
 impl TutorialStep {
     pub fn has_presses(&self) -> bool {
         matches!(self.kind, TutorialStepKind::Press | TutorialStepKind::Order)
+    }
+
+    /// Whose buttons it presses.
+    fn agent(&self) -> Agent {
+        if self.kind == TutorialStepKind::Robot { Agent::Robot } else { Agent::Human }
     }
 
     /// Whether the recipe cards disappear after a set time.
@@ -126,7 +140,8 @@ impl Tutorial {
             if let (Some(&order), Some(dish)) = (kitchen.orders.first(), dish_of(kitchen, one)) {
                 state.set_order(order, OrderContent::Dish(dish));
             }
-            let presses = one.presses.iter().filter(|_| nth < step);
+            // What the robot shows is no work on the kitchen: it shows it again and again.
+            let presses = one.presses.iter().filter(|_| nth < step && one.has_presses());
             for button in presses.filter_map(|name| kitchen.button_named(Agent::Human, name)) {
                 state = kitchen.try_press(state, Agent::Human, button).after;
             }
@@ -166,8 +181,7 @@ impl Tutorial {
             check_names(kitchen, step).map_err(|error| placed(error, nth, step))?;
             let mut state = self.state_at(kitchen, nth);
             for name in &step.presses {
-                let press = kitchen.button_named(Agent::Human, name).map(|button| pressed(kitchen, state, button));
-                let Some(Some(after)) = press else {
+                let Some(after) = pressed(kitchen, state, step.agent(), name) else {
                     let found =
                         format!("step \"{}\": \"{name}\", which does nothing after the presses before it", step.id);
                     let remedy =
@@ -188,8 +202,8 @@ impl Tutorial {
 }
 
 /// `None` if the press has no effect.
-fn pressed(kitchen: &Kitchen, state: State, button: ButtonId) -> Option<State> {
-    let press = kitchen.try_press(state, Agent::Human, button);
+fn pressed(kitchen: &Kitchen, state: State, agent: Agent, button: &str) -> Option<State> {
+    let press = kitchen.try_press(state, agent, kitchen.button_named(agent, button)?);
     press.effective.then_some(press.after)
 }
 
@@ -204,11 +218,16 @@ fn placed(error: SettingError, nth: usize, step: &TutorialStep) -> SettingError 
 }
 
 fn check_step(step: &TutorialStep) -> Result<(), SettingError> {
-    use TutorialStepKind::{Order, Press, Question, Recipes, Signal, Text};
+    use TutorialStepKind::{Order, Press, Probe, Question, Recipes, Robot, Signal, Text};
     let wrong = |key: &str, found: String, remedy: &'static str| Err(SettingError::new(key, found, remedy));
     let kind = step.kind;
     let given = [
-        ("presses", !step.presses.is_empty(), matches!(kind, Press | Order), matches!(kind, Press | Order)),
+        (
+            "presses",
+            !step.presses.is_empty(),
+            matches!(kind, Press | Order | Robot),
+            matches!(kind, Press | Order | Robot),
+        ),
         (
             "dish",
             step.dish.is_some(),
@@ -222,6 +241,7 @@ fn check_step(step: &TutorialStep) -> Result<(), SettingError> {
         ("choices", !step.choices.is_empty(), kind == Question, kind == Question),
         ("right", step.right.is_some(), kind == Question, kind == Question),
         ("explanation", step.explanation.is_some(), kind == Question, kind == Question),
+        ("about", step.about.is_some(), kind == Probe, kind == Probe),
     ];
     for (key, is_there, may, must) in given {
         if is_there && !may {
@@ -255,7 +275,7 @@ fn check_step(step: &TutorialStep) -> Result<(), SettingError> {
 
 fn check_names(kitchen: &Kitchen, step: &TutorialStep) -> Result<(), SettingError> {
     let wrong = |key: &str, found: String, remedy: &'static str| Err(SettingError::new(key, found, remedy));
-    let is_button = |name: &String| kitchen.button_named(Agent::Human, name).is_some();
+    let is_button = |name: &String| kitchen.button_named(step.agent(), name).is_some();
     let is_shown = |name: &String| TutorialTarget::named(kitchen, name).is_some();
     if let Some(name) = step.point_at.iter().find(|name| !is_shown(name)) {
         let remedy =
@@ -266,16 +286,18 @@ fn check_names(kitchen: &Kitchen, step: &TutorialStep) -> Result<(), SettingErro
         return wrong(
             "presses",
             format!("the button \"{name}\""),
-            "a button of the human, as tomcom kitchen LAYOUT lists them",
+            "a button of the human, or with kind = \"robot\" of the robot, as tomcom kitchen LAYOUT lists them",
         );
     }
     if let Some(name) = step.dish.as_ref().filter(|name| kitchen.dish_named(name).is_none()) {
         return wrong("dish", format!("the dish \"{name}\""), "a dish of the kitchen's menu");
     }
-    match step.highlight.as_ref().filter(|name| kitchen.location_named(name).is_none()) {
-        Some(name) => wrong("highlight", format!("highlight \"{name}\""), "a location of the layout"),
-        None => Ok(()),
+    for (key, name) in [("highlight", &step.highlight), ("about", &step.about)] {
+        if let Some(name) = name.as_ref().filter(|name| kitchen.location_named(name).is_none()) {
+            return wrong(key, format!("{key} \"{name}\""), "a location of the layout");
+        }
     }
+    Ok(())
 }
 
 /// What a step can frame on the display.
@@ -334,7 +356,7 @@ pub enum TutorialEvent {
     },
     Answered {
         step: String,
-        /// From 1.
+        /// From 1; 0: "I don't know", of a practised probe.
         choice: u8,
     },
     /// The participant read the last step, or the wizard skipped the rest.
@@ -415,9 +437,10 @@ impl TutorialState {
         // tutorial: the recipes have to be remembered.
         self.are_cards_hidden = tutorial.steps.get(step).is_some_and(TutorialStep::is_timed) && self.is_done();
         let needs_nothing = tutorial.steps.get(step).is_some_and(|step| match step.kind {
-            TutorialStepKind::Text | TutorialStepKind::Signal => true,
+            TutorialStepKind::Text | TutorialStepKind::Signal | TutorialStepKind::Robot => true,
             TutorialStepKind::Recipes => !step.is_timed(),
-            TutorialStepKind::Press | TutorialStepKind::Order | TutorialStepKind::Question => false,
+            TutorialStepKind::Press | TutorialStepKind::Order => false,
+            TutorialStepKind::Question | TutorialStepKind::Probe => false,
         });
         self.finish(needs_nothing);
     }
@@ -459,8 +482,7 @@ impl TutorialState {
         }
     }
 
-    pub(crate) fn answer(&mut self, step: &TutorialStep, choice: u8) {
-        let is_right = step.right == Some(choice);
+    pub(crate) fn answer(&mut self, is_right: bool, choice: u8) {
         self.wrong = (!is_right).then_some(choice);
         if let Some(count) = self.wrong_answers.get_mut(self.step) {
             *count += u32::from(!is_right);
@@ -482,6 +504,16 @@ impl TutorialState {
 }
 
 impl Session {
+    /// The question that the shown step of the tutorial practises, with the right answer.
+    pub fn practised_question(&self) -> Option<(ProbeQuestion, &str)> {
+        let (step, state) = self.tutorial_step()?;
+        let location = step.about.as_ref()?;
+        let question = probe_sampling::practice(self, state.kitchen, location);
+        let aspect = AspectId::of_location(self.kitchen.location_named(location)?);
+        let truth = self.kitchen.true_value(state.kitchen, aspect);
+        Some((question, &self.kitchen.aspects[aspect.index()].labels[truth]))
+    }
+
     /// Of the present phase.
     pub fn tutorial(&self) -> Option<(&Tutorial, &TutorialState)> {
         let (_, protocol) = self.step()?;
@@ -525,8 +557,12 @@ pub(crate) fn admit(session: &Session, event: &TutorialEvent) -> Result<(), &'st
         }
         TutorialEvent::Answered { step: id, choice } => {
             is_shown(id)?;
-            let is_choice = *choice > 0 && usize::from(*choice) <= step.choices.len();
-            unless(step.kind == TutorialStepKind::Question && is_choice, "the tutorial's question has no such choice")?;
+            // Whoever does not know the answer to a probe says so.
+            let is_choice = match session.practised_question() {
+                Some((question, _)) => usize::from(*choice) <= question.choices.len(),
+                None => *choice > 0 && usize::from(*choice) <= step.choices.len(),
+            };
+            unless(is_choice, "the tutorial's question has no such choice")?;
             unless(!state.is_done(), "this question of the tutorial is answered already")
         }
         TutorialEvent::Ended { by } => {
@@ -563,7 +599,16 @@ pub(crate) fn apply(session: &mut Session, event: &TutorialEvent, now: SessionTi
             }
         }
         TutorialEvent::CardsHidden { .. } => state.hide_cards(),
-        TutorialEvent::Answered { choice, .. } => state.answer(step, *choice),
+        TutorialEvent::Answered { choice, .. } => {
+            let is_right = match session.practised_question() {
+                Some((question, truth)) => {
+                    let answer = usize::from(*choice).checked_sub(1).and_then(|index| question.choices.get(index));
+                    answer.is_some_and(|answer| answer == question.choice_for(truth))
+                }
+                None => step.right == Some(*choice),
+            };
+            state.answer(is_right, *choice);
+        }
         TutorialEvent::Ended { .. } => state.is_over = true,
     }
     if let Some(protocol) = &mut session.protocol {

@@ -18,7 +18,7 @@ pub struct DisplaySpec {
     pub listen: IpAddr,
     /// TCP port of the page.
     pub port: u16,
-    /// "en", "de", or the path of a file with words, relative to the session file.
+    /// One of [`DisplaySpec::LANGUAGES`], or the path of a file with words, relative to the session file.
     pub language: String,
     /// From the language file; in a recording, the words in use.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
@@ -89,7 +89,7 @@ impl DisplaySpec {
     }
 
     /// Those that are built in.
-    pub const LANGUAGES: [&str; 2] = ["en", "de"];
+    pub const LANGUAGES: [&str; 6] = ["en", "de", "es", "fr", "it", "ja"];
 
     pub(super) fn check(&self) -> Result<(), SettingError> {
         let is_long = |word: &&String| word.chars().count() > 400;

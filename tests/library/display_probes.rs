@@ -1,6 +1,6 @@
 //! Freeze probes on the participant's display: what the page is told of every question, and what an answer means.
 
-use tomcom_devices::sight::{DisplayStage, choice_made_of, probe_left, probe_wording, sight};
+use tomcom_devices::sight::{DisplayStage, probe_left, probe_wording, sight};
 use tomcom_session::apply;
 use tomcom_session::probes::{ProbeEndReason, ProbeOrigin, ProbeQuestion, ProbeSubject};
 
@@ -72,7 +72,7 @@ fn keys(value: &Value) -> BTreeSet<&str> {
 
 /// Fields of a probe on the page.
 const FIELDS: [&str; 10] =
-    ["probe", "question", "of", "text", "about", "choices", "parts", "confidence", "limit_s", "closed"];
+    ["probe", "question", "of", "text", "about", "choices", "confidence", "limit_s", "late", "closed"];
 
 /// Holds what the page is told during a probe against the question: nothing but question, choices and progress.
 fn check(probed: &Probed, asked: Option<&ProbeQuestion>) {
@@ -102,12 +102,7 @@ fn check(probed: &Probed, asked: Option<&ProbeQuestion>) {
         let is_dish = kitchen.dish_named(name).is_some();
         assert!(is_recipe || !is_dish || choice["shows"] == serde_json::json!({ "dish": name }), "{choice}");
     }
-    let has_parts = probe["parts"].as_array().is_some_and(|parts| !parts.is_empty());
-    let left_out = asked.choices.len() - choices.len();
-    assert_eq!(has_parts, left_out > 0, "{probe}");
-    // Where stacks are put together, none is listed: which full ones are on the menu would be seen.
-    assert!(!has_parts || choices.iter().all(|choice| choice["shows"].get("stack").is_none()), "{probe}");
-    assert!(choices.len() <= 24, "{} choices cannot be looked through: {probe}", choices.len());
+    assert_eq!(choices.len(), asked.choices.len(), "{probe}");
 }
 
 #[test]
@@ -163,59 +158,27 @@ fn the_page_is_told_the_question_and_nothing_of_the_kitchen() {
 fn a_pause_hides_the_question_and_stops_its_time() {
     let mut probed = Probed::running(SESSIONS[0], "en");
     let questions = every_question(&probed.session.kitchen.clone());
-    probed.begin(30.0, questions[..2].to_vec());
+    probed.begin(30.0, questions[..3].to_vec());
     probed.probe(31.0, ProbeEvent::Asked { probe: 1, question: 1 });
     let left_s = |probed: &Probed, now: f64| probe_left(&probed.session, at(now)).map(SessionTime::as_secs_f64);
-    assert_eq!(left_s(&probed, 35.0), Some(20.0));
+    assert_eq!(left_s(&probed, 35.0), Some(8.0));
     let shown = probed.told();
     probed.at(36.0, Event::TrialPaused);
     assert_eq!(sight(&probed.session).stage, DisplayStage::Paused);
     assert_eq!((probed.told()["probe"].is_null(), left_s(&probed, 40.0)), (true, None));
     probed.at(46.0, Event::TrialResumed);
-    assert_eq!((probed.told(), left_s(&probed, 46.0)), (shown, Some(19.0)));
-    probed.probe(47.0, ProbeEvent::Skipped { probe: 1, reason: "a question".to_string() });
-    probed.probe(47.0, ProbeEvent::Closed { probe: 1, reason: ProbeEndReason::Skipped });
-    assert_eq!(left_s(&probed, 48.0), Some(2.0));
-}
-
-#[test]
-fn every_choice_can_be_made_by_a_touch_or_of_its_items() {
-    for path in SESSIONS {
-        let mut probed = Probed::running(path, "en");
-        let kitchen = probed.session.kitchen.clone();
-        let questions = every_question(&kitchen);
-        probed.begin(30.0, questions.clone());
-        for (index, asked) in questions.iter().enumerate() {
-            let number = index as u32 + 1;
-            probed.probe(31.0, ProbeEvent::Asked { probe: 1, question: number });
-            let told = probed.told();
-            let listed: Vec<usize> = told["probe"]["choices"]
-                .as_array()
-                .expect("a list")
-                .iter()
-                .filter_map(|choice| choice["number"].as_u64().map(|number| number as usize))
-                .collect();
-            let slots: Vec<Vec<String>> = serde_json::from_value(told["probe"]["parts"].clone()).expect("lists");
-            let slot = |item: &String| slots.iter().position(|items| items.contains(item));
-            for (place, name) in asked.choices.iter().enumerate() {
-                if listed.contains(&(place + 1)) {
-                    continue;
-                }
-                // It is a stack: one item of each of some slots, in any order.
-                let content = kitchen.content(kitchen.content_named(name).expect("a content"));
-                let mut items: Vec<String> =
-                    content.items.iter().map(|item| kitchen.content(*item).name.clone()).collect();
-                let used: BTreeSet<usize> = items.iter().map(|item| slot(item).expect("a slot")).collect();
-                assert_eq!(used.len(), items.len(), "two items of {name} share a slot");
-                items.reverse();
-                assert_eq!(choice_made_of(&kitchen, asked, &items).as_ref(), Some(name));
-            }
-            let (answer, confidence, on) = (None, None, AnswerDevice::Display);
-            probed.probe(31.0, ProbeEvent::Answered { probe: 1, question: number, answer, confidence, on });
-        }
-        let none = choice_made_of(&kitchen, &questions[0], &["no such item".to_string()]);
-        assert_eq!(none, None, "an unknown item is no answer");
-    }
+    assert_eq!((probed.told(), left_s(&probed, 46.0)), (shown, Some(7.0)));
+    // A question whose time went by is told of with the next one, and one that was answered is not.
+    assert_eq!(probed.told()["probe"]["late"], false);
+    probed.probe(53.0, ProbeEvent::Asked { probe: 1, question: 2 });
+    assert_eq!((&probed.told()["probe"]["late"], left_s(&probed, 54.0)), (&true.into(), Some(11.0)));
+    let (answer, confidence, on) = (None, None, AnswerDevice::Display);
+    probed.probe(54.0, ProbeEvent::Answered { probe: 1, question: 2, answer, confidence, on });
+    probed.probe(54.0, ProbeEvent::Asked { probe: 1, question: 3 });
+    assert_eq!(probed.told()["probe"]["late"], false);
+    probed.probe(55.0, ProbeEvent::Skipped { probe: 1, reason: "a question".to_string() });
+    probed.probe(55.0, ProbeEvent::Closed { probe: 1, reason: ProbeEndReason::Skipped });
+    assert_eq!((&probed.told()["probe"]["late"], left_s(&probed, 56.0)), (&false.into(), Some(2.0)));
 }
 
 #[test]

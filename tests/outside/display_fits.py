@@ -2,8 +2,9 @@
 
     tests/outside/display_fits.py TOMCOM FOLDER [--from-disk] [--screenshots]
 
-Languages: English, German, and one whose words are 40 % longer than the English ones. What is measured are boxes of the
-rendered text, by the browser: no text is cut off, leaves its own box, or meets another text, a button, a place or a tag; the robot's hand covers nothing where it stops. Capitals
+Languages: English, German, Japanese, and one whose words are 40 % longer than the English ones: with it, every word on the page is one of its
+file, or of the session. What is measured are boxes of the rendered text, by the browser: no text is cut off, leaves its own box, or meets
+another text, a button, a place or a tag; the robot's hand covers nothing where it stops. Capitals
 of English and German text are at least 17 arc minutes high at 3 m, on a screen of the layout's width. On an upright telephone
 of 390x844 what is touched is at least 44 pixels wide and high, and English and German text has capitals of at least 6.5 pixels.
 """
@@ -11,6 +12,7 @@ of 390x844 what is touched is at least 44 pixels wide and high, and English and 
 import argparse
 import json
 import os
+import re
 import sys
 import tomllib
 from pathlib import Path
@@ -99,7 +101,8 @@ MEASURE = """([states, DISTANCE_M]) => Object.entries(states).map(([name, sight]
     ruler.font = `${fontWeight} 100px ${fontFamily}`;
     return [`"${said}"`, (ruler.measureText("H").actualBoundingBoxAscent / 100) * parseFloat(fontSize)];
   }));
-  return { name, found: [...new Set(found)], minutes, least, lowest };
+  const labels = [...document.querySelectorAll("#stage [aria-label]")].map((made) => made.getAttribute("aria-label"));
+  return { name, found: [...new Set(found)], minutes, least, lowest, said: [...texts.map(({ said }) => said), ...labels] };
 })"""
 
 
@@ -140,6 +143,19 @@ def too_small(size, language, measured):
     return touched + [f"{text}: capitals of {px:.1f} px" for text, px in measured["lowest"].items() if px < CAPITALS_PX and language != "longer"]
 
 
+def words_in(text):
+    """Its words of two letters or more, without case."""
+    return {word.casefold() for word in re.findall(r"[^\W\d_]{2,}", text)}
+
+
+def of_the_page(measured, language, sight, scene):
+    """Words that stand on the page and in no file: in the language whose words are longer, those that neither it nor the state has."""
+    if language != "longer":
+        return []
+    known = words_in(json.dumps([sight, scene], ensure_ascii=False))
+    return sorted({f'"{word}" is not from the file of the language' for said in measured["said"] for word in words_in(said) - known})
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("tomcom")
@@ -151,7 +167,7 @@ def main():
     with browser() as chromium:
         for kitchen in KITCHENS:
             scene = None
-            for language in ("en", "de", "longer"):
+            for language in ("en", "de", "ja", "longer"):
                 folder = arguments.folder / f"{kitchen}-{language}"
                 folder.mkdir(parents=True, exist_ok=True)
                 words = language if language != "longer" else long_language(folder, scene, kitchen)
@@ -169,7 +185,7 @@ def main():
                                 failed.setdefault(f"the robot's hand at {covered[0]} covers {covered[1]}", []).append(f"{kitchen} {language} {size[0]}x{size[1]}")
                         for measured in page.page.evaluate(MEASURE, [every, DISTANCE_M]):
                             looked += 1
-                            name, found = measured["name"], measured["found"] + too_small(size, language, measured)
+                            name, found = measured["name"], measured["found"] + too_small(size, language, measured) + of_the_page(measured, language, every[measured["name"]], here)
                             for problem in found:
                                 failed.setdefault(problem, []).append(f"{kitchen} {language} {size[0]}x{size[1]}: {name}")
                             if found and arguments.screenshots:

@@ -42,8 +42,6 @@ def chosen(scene, kitchen):
     made = {stage: {**every[stage], "contents": contents} for stage in ("welcome", "instruction", "ready", "paused", "over", "questionnaire", "answers", "answered", "thanks")}
     for stage, text in (("questionnaire", "The signals came when I needed them."), ("answers", "Thank you. Are your answers as you meant them?")):
         made[stage]["question"] = {**made[stage]["question"], "title": "How was it?", "text": text}
-    stack, lies_there = every["probe: stack"]["probe"], lies.get("assembly_board", {}).get("stack", [])
-    lying = [choice["number"] for choice in stack["choices"] if choice["shows"] in [{"item": item} for item in lies_there]]
     recipes, question = every["tutorial: cards"]["tutorial"], every["tutorial: question"]["tutorial"]
     steps = tutorial_steps(scene, kitchen)
     def worded(page, kind):
@@ -60,7 +58,7 @@ def chosen(scene, kitchen):
         "tutorial-recipes": {**every["tutorial: cards"], "tutorial": recipes},
         "tutorial-question": {**every["tutorial: question"], "tutorial": question},
         "probe-question": every["probe: place"],
-        "probe-stack": {**every["probe: stack"], "probe": {**stack, "touched": lying}},
+        "probe-stack": every["probe: stack"],
         "probe-recipe": every["probe: recipe"],
         "running": running,
         "recipe": {**running, "signal": {"recipe": {"order": order, "dish": dish, "items": items_of(kitchen)[dish]}}},

@@ -81,7 +81,7 @@ def forms():
 
 
 TUTORIAL_PAGE = {"kind": "text", "title": "The cooking pot", "text": "Rice and crab are cooked there. It holds one thing: what lies in it is in the way of what comes next.", "number": 3,
-                 "of": 18, "done": True, "frames": [], "hint": None, "presses": None, "explains_buttons": False, "missed": False, "cards": [], "seconds": None, "left_s": None, "question": None}
+                 "of": 18, "done": True, "frames": [], "hint": None, "presses": None, "explains_buttons": False, "missed": False, "cards": [], "seconds": None, "left_s": None, "question": None, "probe": None, "robot": []}
 
 
 def tutorial_steps(scene, kitchen):
@@ -92,18 +92,20 @@ def tutorial_steps(scene, kitchen):
 def tutorial_texts(scene, kitchen):
     """The steps of the kitchen's own tutorial that stand beside the kitchen: page and signal, with the longest line that it can have below its text."""
     at = {spot["name"]: {"place": {"location": index}} for index, spot in enumerate(scene["locations"])}
-    steps = [step for step in tutorial_steps(scene, kitchen) if step["kind"] in ("text", "press", "order", "signal")]
+    steps = [step for step in tutorial_steps(scene, kitchen) if step["kind"] in ("text", "press", "order", "signal", "robot", "probe")]
+    pressed = lambda step: step["kind"] in ("press", "order")
     first = next(step["id"] for step in steps if step["kind"] == "press")
     frames = lambda step: [at[name] if name in at else {"area": name} for name in step.get("point_at", [])]
-    hint = lambda step: {"button": step["presses"][0], "after_s": 0.0} if "presses" in step else None
-    presses = lambda step: [0, len(step["presses"])] if "presses" in step else None
+    hint = lambda step: {"button": step["presses"][0], "after_s": 0.0} if pressed(step) else None
+    presses = lambda step: [0, len(step["presses"])] if pressed(step) else None
     order, dishes = next(at[name]["place"]["location"] for name in at if name.startswith("order")), items_of(kitchen)
     def signal(step):
         if step["kind"] != "signal":
             return None
         return {"highlight": at[step["highlight"]]["place"]["location"]} if "highlight" in step else {"recipe": {"order": order, "dish": step["dish"], "items": dishes[step["dish"]]}}
-    return {step["id"]: ({"title": step["title"], "text": step["text"], "frames": frames(step), "hint": hint(step), "presses": presses(step), "missed": "presses" in step,
-                         "done": "presses" not in step, "explains_buttons": step["id"] == first}, signal(step)) for step in steps}
+    return {step["id"]: ({"title": step["title"], "text": step["text"], "frames": frames(step), "hint": hint(step), "presses": presses(step), "missed": pressed(step) or step["kind"] == "probe",
+                         "kind": step["kind"], "probe": PROBE if step["kind"] == "probe" else None,
+                         "done": step["kind"] in ("text", "signal", "robot"), "explains_buttons": step["id"] == first}, signal(step)) for step in steps}
 
 
 def tutorial_pages(scene, dishes):
@@ -118,7 +120,7 @@ def tutorial_pages(scene, dishes):
     }
 
 
-PROBE = {"probe": 1, "question": 2, "of": 3, "text": "", "about": None, "choices": [], "parts": [], "confidence": False, "limit_s": 25.0, "closed": False}
+PROBE = {"probe": 1, "question": 2, "of": 3, "text": "", "about": None, "choices": [], "confidence": False, "limit_s": 12.0, "late": False, "closed": False}
 
 
 def probe_pages(scene, kitchen, dishes):
@@ -133,7 +135,8 @@ def probe_pages(scene, kitchen, dishes):
     slots = [slot["items"] for slot in recipes["slot"]]
     at = {spot["name"]: index for index, spot in enumerate(scene["locations"])}
     label = lambda index: scene["locations"][index]["label"]
-    nothing = (said("empty"), "empty")
+    nothing, other = (said("empty"), "empty"), (said("something else"), None)
+    cards = lambda *all: [nothing, *[one for one in all if one != nothing][:10], other]
     items = [(known["label"], {"item": name}) for name, known in scene["items"].items()]
     menu = [(known["label"], {"dish": name}) for name, known in scene["dishes"].items()]
     pot, board, small = ("cooking_pot", "assembly_board", "rolling_mat") if kitchen == "sushi" else ("grill_plate", "board", "tray")
@@ -146,15 +149,16 @@ def probe_pages(scene, kitchen, dishes):
     uses = [(said("do use", spot["label"]), {"location": index}) for index, spot in enumerate(scene["locations"]) if spot["kind"] == "place"]
     asked = {
         "before": {"question": 0},
-        "place": {"text": said("ask " + pot.replace("_", " ")), "about": {"location": at[pot]}, "choices": [nothing, *items]},
-        "stack": {"text": said("ask " + board.replace("_", " ")), "about": {"location": at[board]}, "choices": [*menu, nothing, *items], "parts": slots},
-        "few": {"text": said("ask place", label(at[small])), "about": {"location": at[small]}, "choices": [*items[:2], nothing, *stacks]},
+        "place": {"text": said("ask " + pot.replace("_", " ")), "about": {"location": at[pot]}, "choices": cards(*items)},
+        "stack": {"text": said("ask " + board.replace("_", " ")), "about": {"location": at[board]}, "choices": cards(*menu[:3], *stacks, *items)},
+        "few": {"text": said("ask place", label(at[small])), "about": {"location": at[small]}, "choices": [nothing, *items[:2], *stacks]},
         "recipe": {"text": said("ask recipe", scene["dishes"][dish]["label"]), "about": {"dish": dish}, "choices": [("", {"recipe": variant}) for variant in variants]},
         "order": {"text": said("ask order", label(orders[0])), "about": {"order": 0}, "choices": [(said("no order"), "empty"), (said("served"), None), *menu]},
         "next order": {"text": said("ask next order"), "choices": [(label(index), {"order": number}) for number, index in enumerate(orders)]},
-        "next press": {"text": said("ask next press"), "about": {"location": at["robot_hand"]}, "choices": takes + uses},
-        "sure": {"text": said("ask robot hand"), "about": {"location": at["robot_hand"]}, "choices": [nothing, *items], "confidence": True, "touched": [3]},
-        "after": {"question": 0, "closed": True},
+        "next press": {"text": said("ask next press"), "about": {"location": at["robot_hand"]}, "choices": (takes + uses)[:11] + [other]},
+        "sure": {"text": said("ask robot hand"), "about": {"location": at["robot_hand"]}, "choices": cards(*items), "confidence": True, "touched": [3]},
+        "late": {"text": said("ask " + pot.replace("_", " ")), "about": {"location": at[pot]}, "choices": cards(*items), "late": True},
+        "after": {"question": 0, "closed": True, "late": True},
     }
     def page(number, state):
         choices = [{"number": at, "words": words, "shows": shows} for at, (words, shows) in enumerate(state.get("choices", []), 1)]

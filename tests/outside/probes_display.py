@@ -21,7 +21,7 @@ from page import Page, browser, plain
 
 PORT = 20351
 # What the page may be told of a probe, and nothing else.
-FIELDS = {"probe", "question", "of", "text", "about", "choices", "parts", "confidence", "limit_s", "closed"}
+FIELDS = {"probe", "question", "of", "text", "about", "choices", "confidence", "limit_s", "late", "closed"}
 NEVER = re.compile(r"inclusion|truth|estimate|origin|correct|right|wrong|believe[sd]|p_truth|variant|due|schedule")
 
 
@@ -78,9 +78,8 @@ def leaks(page):
         assert set(message) <= {"kind", "sight", "at", "left_s"} and set(probe) == FIELDS, message
         assert all(set(choice) == {"number", "words", "shows"} for choice in probe["choices"]), probe
         assert not NEVER.search(json.dumps({key: value for key, value in probe.items() if key != "text"})), probe
-        # Which full stacks are on the menu is a recipe: of the items of a stack the page knows only the slots.
-        if probe["parts"]:
-            assert not [choice for choice in probe["choices"] if choice["shows"] not in ("empty",) and ("stack" in choice["shows"] or "recipe" in choice["shows"])], probe
+        shows = [choice["shows"] for choice in probe["choices"]]
+        assert len(shows) <= 12 and "empty" not in shows[1:], probe
     return probes
 
 
@@ -98,18 +97,12 @@ def answer(page, way, index=0):
             return None
         choice = probe["choices"][index]
         page.page.locator(f'[data-believe="{choice["number"]}"]').tap()
-        if probe["parts"]:
-            page.page.locator("[data-done]").tap()
         return choice
     press = page.page.keyboard.press if way == "keys" else lambda name: pad(page, name)
     selector = "[data-unknown]" if index is None else f'[data-believe="{probe["choices"][index]["number"]}"]'
     target = page.ask(f"(() => {{ const {{ left, top, width, height }} = document.querySelector('{selector}').getBoundingClientRect(); return [left + width / 2, top + height / 2]; }})()")
     reach(page, press, target)
     press("Enter")
-    if index is not None and probe["parts"]:
-        done = page.ask("(() => { const { left, top, width, height } = document.querySelector('[data-done]').getBoundingClientRect(); return [left + width / 2, top + height / 2]; })()")
-        reach(page, press, done)
-        press("Enter")
     return None if index is None else probe["choices"][index]
 
 
@@ -155,7 +148,7 @@ def returns(page):
 
 
 def plays(tomcom, chromium, folder, kitchen, language):
-    probes = "per_trial = 0\nafter_signal_s = 0.5\nleast_questions = 3\nmost_questions = 3\nlimit_s = 25.0"
+    probes = "per_trial = 0\nafter_signal_s = 0.5\nleast_questions = 3\nmost_questions = 3\nlimit_s = 12.0"
     session = session_file(folder, kitchen, language, probes)
     given = []
     with Console(tomcom, [session, "--code", "P01", "--out", folder / "recordings"]) as console:
@@ -196,7 +189,7 @@ def plays(tomcom, chromium, folder, kitchen, language):
         number = page.probe()["probe"]
         given.append(answer(page, "keys", 2))
         page.asks(2)
-        tell = "kind: 'believe', choice: 1, items: [], sure: null"
+        tell = "kind: 'believe', choice: 1, sure: null"
         said = len(answered(folder))
         page.ask("(() => { const send = WebSocket.prototype.send; WebSocket.prototype.send = function (...all) { window.used = this; return send.apply(this, all); }; })()")
         page.wait_for("window.used")
@@ -216,8 +209,10 @@ def plays(tomcom, chromium, folder, kitchen, language):
         again = page.ask("document.querySelector('.probing .left').getBoundingClientRect().width")
         assert abs(again - left) < 60, f"the time went on in the pause: {left} and {again} px"
         given.append(answer(page, "keys", None))
+        # The time of a question goes by: the page says so, and the task goes on.
         page.asks(3)
-        given.append(answer(page, "keys", 0))
+        page.wait_for("document.querySelector('.probing .left.ends')", 20)
+        page.wait_for("Stage.shown().probe.closed && document.querySelector('.probing .late')", 20)
         returns(page)
         late(number, 3)
 
@@ -253,7 +248,7 @@ def check_log(tomcom, folder, given):
         assert answer == wanted, (probe, question, answer, choice)
     assert all(event["on"] == "display" for event in log if event.get("did") == "answered")
     closed = [event["reason"] for event in log if event.get("did") == "closed"]
-    assert closed == ["answered", "answered", "skipped"], closed
+    assert closed == ["answered", "time_over", "skipped"], closed
     (recording,) = (folder / "recordings").glob("*")
     verified = subprocess.run([tomcom, "replay", recording, "--verify"], capture_output=True, text=True)
     assert verified.returncode == 0, verified.stdout + verified.stderr

@@ -12,6 +12,11 @@ from page import Page
 
 CONSENT = "I have read the information sheet. " * 40
 SIZES = [(1280, 720), (1920, 1080), (1080, 1920)]
+# Where the buttons are that turn the items.
+PLACES = """[...document.querySelectorAll(".turns .next, .turns .skip")].map((made) => {
+  const { left, top, width, height } = made.getBoundingClientRect();
+  return [made.className, Math.round(left), Math.round(top), Math.round(width), Math.round(height)];
+})"""
 # Consent by a page that keeps to nothing: it takes the place of the real one, and says at once that the button was held.
 FORGED = """(hold) => new Promise((done) => {
   const socket = new WebSocket(`ws://${location.host}/talk`), say = (message) => socket.send(JSON.stringify(message));
@@ -70,7 +75,8 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
     url = f"http://127.0.0.1:{port}"
 
     def item(id):
-        page.wait_for(f"Stage.shown() && Stage.shown().question && Stage.shown().question.item === {json.dumps(id)}")
+        """The item is shown, and takes touches."""
+        page.wait_for(f"Stage.shown() && Stage.shown().question && Stage.shown().question.item === {json.dumps(id)} && !('settles' in document.querySelector('.sheet').dataset)")
 
     def answer(value):
         written = json.dumps(json.dumps(value, separators=(",", ":")))
@@ -117,6 +123,7 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         keyboard.up("Enter")
         # A number by touch, beyond its range first, and then by keys.
         item("age")
+        places = page.ask(PLACES)
         for key in "16":
             click(f'[data-typed="{key}"]')
         click('[data-does="next"]')
@@ -138,8 +145,10 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         keyboard.type("1")
         click('[data-typed="9"]')
         pictures("number")
-        click('[data-does="next"]')
+        # A second touch of "Next" goes nowhere: neither "No answer" nor another answer is where it was.
+        page.page.dblclick('[data-does="next"]')
         item("gender")
+        assert page.ask(PLACES) == places, (places, page.ask(PLACES))
         keyboard.press("Shift+Tab")
         page.page.focus("textarea")
         # A text that is too long is not cut, but refused.
@@ -156,6 +165,13 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         pictures("choice")
         click('[data-option="left"]')
         item("vision_aids")
+        click('[data-option="lenses"]')
+        answer(["lenses"])
+        keyboard.press("2")
+        answer(["glasses", "lenses"])
+        # What excludes the others takes them back, and the other way round.
+        click('[data-option="none"]')
+        answer(["none"])
         click('[data-option="lenses"]')
         answer(["lenses"])
         keyboard.press("2")
@@ -194,6 +210,9 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         keyboard.press("1")
         page.wait_for("!Stage.shown().question.item")
         pictures("confirm")
+        # No answer is broken that has room in half of the line.
+        broken = page.ask("[...document.querySelectorAll('.given b')].filter((made) => made.clientHeight > 1.8 * parseFloat(getComputedStyle(made).fontSize)).map((made) => made.textContent)")
+        assert not broken, broken
         keyboard.press("Enter")
         page.stage("answered")
         pictures("thanks")

@@ -36,7 +36,7 @@ def session_file(folder, seconds):
     text = Path("sessions/study.toml").read_text().replace("../layouts", str(Path("layouts").resolve()))
     text = text.replace("questionnaires/", f"{Path('sessions/questionnaires').resolve()}/")
     path = folder / "study.toml"
-    path.write_text(text.replace("[display]\n", f"[display]\nport = {PORT}\n"))
+    path.write_text(text.replace("[display]\n", f"[display]\nport = {PORT}\n") + "\n[probes]\nper_trial = 0\n")
     return path
 
 
@@ -95,6 +95,27 @@ def checks_a_press_too_many(page, way, words, folder):
     assert page.ask("document.querySelector('.lesson .verdict.line').classList.contains('right')")
     assert not page.ask("document.querySelector('.why.says')?.textContent ?? ''").startswith(words["page tutorial another first"])
     page.screenshot(folder / "a-press-too-many.png")
+
+
+def checks_the_robot_moves(page):
+    """The robot's hand goes to what it takes, and lays it down."""
+    where = "document.querySelector('.robot-hand').dataset.x"
+    before = page.ask(where)
+    page.wait_for(f"{where} !== '{before}' && getComputedStyle(document.querySelector('.robot-hand')).visibility === 'visible'")
+    page.wait_for("[...document.querySelectorAll('.spot.place')].some((made) => made.dataset.holds === 'item')")
+
+
+def practises(page, way, words, folder):
+    """The question of a probe: "I don't know" first, then the right answer. What the kitchen holds cannot be seen meanwhile."""
+    right = page.ask("Stage.shown().tutorial.probe.choices.find(({ shows }) => shows && shows.item === 'salmon cut').number")
+    for selector, said in (("[data-unknown]", "page tutorial probe wrong"), (f'[data-believe="{right}"]', "page tutorial right")):
+        turn(page, way)
+        page.wait_for("document.querySelector('.probing .choices')")
+        page.page.wait_for_timeout(300)
+        page.screenshot(folder / "practised-probe.png")
+        page.ask(f"Probe.touch(document.querySelector({json.dumps(selector)}).dataset)")
+        page.wait_for(f"document.querySelector('.lesson .verdict.line')?.textContent === {json.dumps(words[said])}")
+    page.wait_for("Stage.shown().tutorial.done")
 
 
 def checks_the_time_goes_on(page, way, words, step):
@@ -171,8 +192,12 @@ def plays(tomcom, chromium, folder, language, way, size):
                 checks_another_press(page, way, words, folder)
             if name == "stack" and way != "gamepad":
                 checks_the_step_before(page, way, words)
-            for button in step.get("presses", []):
+            for button in step.get("presses", []) if step["kind"] != "robot" else []:
                 page.press(button, way)
+            if step["kind"] == "robot":
+                checks_the_robot_moves(page)
+            if step["kind"] == "probe":
+                practises(page, way, words, folder)
             if name == "take":
                 checks_a_press_too_many(page, way, words, folder)
             if step["kind"] == "recipes":
@@ -199,8 +224,8 @@ def plays(tomcom, chromium, folder, language, way, size):
         console.wait_for("leaves? the tutorial")
         console.quit()
         page.wait_for(f"document.querySelector('.toast.open')?.textContent === {json.dumps(words['page ended'])}")
-        wanted = [button for step in tutorial["step"] for button in step.get("presses", [])]
-        questions = sum(step["kind"] == "question" for step in tutorial["step"])
+        wanted = [button for step in tutorial["step"] if step["kind"] != "robot" for button in step.get("presses", [])]
+        questions = sum(step["kind"] in ("question", "probe") for step in tutorial["step"])
         steps = len(tutorial["step"])
         said = f"tutorial: {steps} of {steps} steps done, {len(wanted) + len(OTHERS)} presses, {questions} wrong answers"
         page.page.wait_for_timeout(300)

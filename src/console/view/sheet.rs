@@ -116,7 +116,7 @@ fn draw_tutorial(
             TutorialStepKind::Press | TutorialStepKind::Order if is_shown => {
                 format!(" ({} of {} presses)", state.presses, step.presses.len())
             }
-            TutorialStepKind::Question if wrong > 0 => format!(" (wrong answers: {wrong})"),
+            TutorialStepKind::Question | TutorialStepKind::Probe if wrong > 0 => format!(" (wrong answers: {wrong})"),
             _ => String::new(),
         };
         page.marked(mark, &format!("{}{more}", step.title), role);

@@ -14,8 +14,6 @@ use tomcom_session::questionnaire::AnswerValue;
 pub(super) const MAX_BYTES: usize = 4096;
 /// Longest name or other text in a page's message, in bytes.
 const MAX_TEXT: usize = 64;
-/// Largest number of items in a stack (dish) that a participant answers to a probe.
-const MAX_ITEMS: usize = 16;
 /// Longest answer that a participant can type, in characters.
 const MAX_ANSWER: usize = 500;
 /// Largest page width or height that is accepted, in pixels.
@@ -144,11 +142,8 @@ fn is_reply(reply: &ParticipantResponse) -> bool {
         | ParticipantResponse::Turn { step: name, .. }
         | ParticipantResponse::Choose { step: name, .. }
         | ParticipantResponse::CardsShown { step: name } => is_text(name),
-        ParticipantResponse::Believe { choice, items, sure, .. } => {
-            *choice != Some(0)
-                && items.len() <= MAX_ITEMS
-                && items.iter().all(|item| is_text(item))
-                && sure.is_none_or(|sure| (1..=3).contains(&sure))
+        ParticipantResponse::Believe { choice, sure, .. } => {
+            *choice != Some(0) && sure.is_none_or(|sure| (1..=3).contains(&sure))
         }
         ParticipantResponse::Next
         | ParticipantResponse::Hold { .. }
@@ -274,14 +269,13 @@ pub enum ParticipantResponse {
     CardsShown {
         step: String,
     },
-    /// Answer to a freeze probe's question: a choice, or a stack of items; with neither, "I don't know".
+    /// Answer to a freeze probe's question: a choice; without one, "I don't know".
     Believe {
         probe: u32,
         /// Number of the question in the freeze probe, counted from 1.
         question: u32,
         /// Number of the chosen answer to the probe's question, counted from 1.
         choice: Option<u16>,
-        items: Vec<String>,
         /// How sure the participant is of the answer, from 1 to 3; `None` if that is not asked.
         sure: Option<u8>,
     },
@@ -299,8 +293,8 @@ mod tests {
         assert!(read(r#"{"kind": "answer", "item": "age", "answer": 31}"#).is_some());
         assert!(read(r#"{"kind": "answer", "item": "remarks", "answer": "Too fast."}"#).is_some());
         assert!(read(r#"{"kind": "answer", "item": "aids", "answer": ["glasses"]}"#).is_some());
-        let stack = r#"{"kind": "believe", "probe": 1, "question": 2, "choice": null, "items": ["nori", "rice cooked"], "sure": 3}"#;
-        assert!(read(stack).is_some());
+        let belief = r#"{"kind": "believe", "probe": 1, "question": 2, "choice": 12, "sure": 3}"#;
+        assert!(read(belief).is_some());
         for wrong in [
             "",
             "nonsense",
@@ -314,11 +308,10 @@ mod tests {
             r#"{"kind": "answer", "item": "age", "answer": 31.5}"#,
             r#"{"kind": "answer", "item": "remarks", "answer": "two\nlines"}"#,
             r#"{"kind": "answer", "item": "aids", "answer": {"glasses": true}}"#,
-            r#"{"kind": "believe", "probe": 1, "question": 1, "choice": 0, "items": [], "sure": null}"#,
-            r#"{"kind": "believe", "probe": 1, "question": 1, "choice": 1, "items": [], "sure": 4}"#,
-            r#"{"kind": "believe", "probe": -1, "question": 1, "choice": 1, "items": [], "sure": null}"#,
-            r#"{"kind": "believe", "probe": 1, "question": 1, "choice": null, "items": [""], "sure": null}"#,
-            r#"{"kind": "believe", "probe": 1, "question": 1, "choice": 1, "items": [], "sure": null, "right": true}"#,
+            r#"{"kind": "believe", "probe": 1, "question": 1, "choice": 0, "sure": null}"#,
+            r#"{"kind": "believe", "probe": 1, "question": 1, "choice": 1, "sure": 4}"#,
+            r#"{"kind": "believe", "probe": -1, "question": 1, "choice": 1, "sure": null}"#,
+            r#"{"kind": "believe", "probe": 1, "question": 1, "choice": 1, "sure": null, "right": true}"#,
             r#"{"kind": "pointer", "x": 1e9, "y": 0}"#,
             r#"{"kind": "hello", "page": "a", "width": 0, "height": 1, "code": null}"#,
             r#"{"kind": "size", "width": 1920, "height": 200000}"#,

@@ -226,7 +226,7 @@ fn stage(session: &Session) -> DisplayStage {
     }
 }
 
-fn shown(kitchen: &Kitchen, state: State, location: LocationId) -> ShownContent {
+pub(super) fn shown(kitchen: &Kitchen, state: State, location: LocationId) -> ShownContent {
     if kitchen.location(location).kind == LocationKind::Order {
         return match state.order(location) {
             OrderContent::None => ShownContent::Empty,

@@ -16,6 +16,6 @@ mod tutorial_page;
 
 pub use consent::{ConsentHold, consent_sight};
 pub use content::{DisplayContent, DisplayStage, ShownContent, TrialClockState, sight, time_left};
-pub use probe_page::{ProbeWording, choice_made_of, probe_left, probe_wording};
+pub use probe_page::{ProbeWording, probe_left, probe_wording};
 pub use robot_hand::{RobotHand, RobotHandPose};
 pub use scene::{DisplayScene, scene};

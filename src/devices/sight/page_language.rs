@@ -1,4 +1,4 @@
-//! Texts of the participant's display: two built-in languages, and texts from files.
+//! Texts of the participant's display: the built-in languages, and texts from files.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,14 @@ use tomcom_core::kitchen::parts::SCREEN_LANGUAGE;
 use tomcom_session::wall_display::DisplaySpec;
 
 const ENGLISH: &str = include_str!("languages/en.toml");
-const GERMAN: &str = include_str!("languages/de.toml");
+/// The other built-in languages, by their codes: those of [`DisplaySpec::LANGUAGES`].
+const OTHERS: [(&str, &str); 5] = [
+    ("de", include_str!("languages/de.toml")),
+    ("es", include_str!("languages/es.toml")),
+    ("fr", include_str!("languages/fr.toml")),
+    ("it", include_str!("languages/it.toml")),
+    ("ja", include_str!("languages/ja.toml")),
+];
 /// Prefix of the names of the page's own texts; all other texts have names from the kitchen.
 const PAGE: &str = "page ";
 
@@ -25,8 +32,8 @@ impl DisplayWords {
     pub fn for_display(spec: &DisplaySpec) -> DisplayWords {
         let read = |text: &str| toml::from_str::<BTreeMap<String, String>>(text).unwrap_or_default();
         let mut words = read(ENGLISH);
-        if spec.language == "de" {
-            words.extend(read(GERMAN));
+        for (_, others) in OTHERS.iter().filter(|(code, _)| *code == spec.language) {
+            words.extend(read(others));
         }
         words.extend(spec.words.clone());
         let language = words.get("language").cloned().unwrap_or_default();

@@ -6,12 +6,10 @@ use serde::Serialize;
 use super::displayed_item::{SceneElement, spot};
 use super::page_language::DisplayWords;
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, LocationKind};
-use tomcom_session::probes::{ProbeQuestion, ProbeSubject, StartedProbe};
+use tomcom_core::kitchen::{Agent, ButtonAction, Kitchen, LocationId, LocationKind};
+use tomcom_session::probe_sampling::SOMETHING_ELSE;
+use tomcom_session::probes::{ProbeEndReason, ProbeQuestion, ProbeSubject, StartedProbe};
 use tomcom_session::{Session, TrialPhase};
-
-/// Largest number of contents that are shown as a list; with more, the participant composes a stack from its items.
-const MOST_CARDS: usize = 16;
 
 /// An open freeze probe as the participant's display shows it: a question, or the page before the first or after the
 /// last question. The page contains nothing about the truth, the drawing of the question, or earlier answers.
@@ -25,12 +23,11 @@ pub struct DisplayedProbe {
     pub about: Option<ProbePicture>,
     /// Choices of the question, in the order of the log; empty if no question is shown.
     pub choices: Vec<ProbeChoice>,
-    /// Lists of items from which the participant composes a stack, with at most one item of each list; empty if the
-    /// answer is one of the choices.
-    pub parts: Vec<Vec<String>>,
     pub confidence: bool,
-    /// Longest duration of the freeze probe, in seconds.
+    /// Time for the question, in seconds.
     pub limit_s: f64,
+    /// Whether the time of the question before went by without an answer.
+    pub late: bool,
     pub closed: bool,
 }
 
@@ -72,20 +69,46 @@ pub(super) fn probe(session: &Session) -> Option<DisplayedProbe> {
     let (kitchen, settings) = (&session.kitchen, session.spec.probes.as_ref()?);
     let words = DisplayWords::for_kitchen(kitchen, &session.spec.display);
     let question = asked(open);
-    let all = question.map_or_else(Vec::new, |(_, question)| choices(kitchen, &words, question));
-    let parts = question.map_or_else(Vec::new, |(_, question)| parts(kitchen, question, &all));
-    let is_part = |choice: &ProbeChoice| !parts.is_empty() && matches!(choice.shows, Some(ProbePicture::Stack(_)));
     Some(DisplayedProbe {
         probe: open.number,
         question: question.map_or(0, |(index, _)| index as u32 + 1),
         of: open.questions.len(),
         text: question.map_or_else(String::new, |(_, question)| ask(kitchen, &words, &question.about)),
         about: question.and_then(|(_, question)| about(kitchen, &question.about)),
-        choices: all.into_iter().filter(|choice| !is_part(choice)).collect(),
-        parts,
+        choices: question.map_or_else(Vec::new, |(_, question)| choices(kitchen, &words, question)),
         confidence: settings.confidence,
         limit_s: settings.limit_s,
+        late: is_late(open),
         closed: open.closed.is_some(),
+    })
+}
+
+/// Whether the time of the question before went by without an answer.
+fn is_late(open: &StartedProbe) -> bool {
+    let before = match open.closed {
+        Some((ProbeEndReason::TimeOver, _)) => open.shown,
+        Some(_) => None,
+        None => open.shown.and_then(|shown| shown.checked_sub(1)),
+    };
+    before.is_some_and(|before| open.answers[before].is_none())
+}
+
+/// The question that the tutorial's step practises.
+pub(super) fn practice(session: &Session) -> Option<DisplayedProbe> {
+    let (kitchen, settings) = (&session.kitchen, session.spec.probes.as_ref()?);
+    let words = DisplayWords::for_kitchen(kitchen, &session.spec.display);
+    let (question, _) = session.practised_question()?;
+    Some(DisplayedProbe {
+        probe: 0,
+        question: 1,
+        of: 1,
+        text: ask(kitchen, &words, &question.about),
+        about: about(kitchen, &question.about),
+        choices: choices(kitchen, &words, &question),
+        confidence: false,
+        limit_s: settings.limit_s,
+        late: false,
+        closed: false,
     })
 }
 
@@ -100,13 +123,13 @@ fn asked(open: &StartedProbe) -> Option<(usize, &ProbeQuestion)> {
     Some((index, open.questions.get(index)?))
 }
 
-/// Time that the probe still has for its questions, or that its count-down still has; `None` while no time runs.
+/// Time that the shown question still has, or that the probe's count-down still has; `None` while no time runs.
 pub fn probe_left(session: &Session, now: SessionTime) -> Option<SessionTime> {
     let open = shown_probe(session)?;
     let settings = session.spec.probes.as_ref()?;
     let (from, seconds) = match open.closed {
         Some((_, at)) => (at, settings.count_down_s),
-        None => (open.begun, settings.limit_s),
+        None => open.question().map(|_| (open.asked_at, settings.limit_s))?,
     };
     let ends = open.when(from, SessionTime::from_secs_f64(seconds));
     Some(SessionTime(ends.0.saturating_sub(now.0)))
@@ -120,21 +143,6 @@ pub fn probe_wording(session: &Session, question: &ProbeQuestion) -> ProbeWordin
         question: ask(&session.kitchen, &words, &question.about),
         choices: all.into_iter().map(|choice| choice.words).collect(),
     }
-}
-
-/// The choice that consists of these items, by its name in the log; `None` if the question has no such choice.
-pub fn choice_made_of(kitchen: &Kitchen, question: &ProbeQuestion, items: &[String]) -> Option<String> {
-    let sorted = |ids: &[ContentId]| {
-        let mut names: Vec<&str> = ids.iter().map(|id| kitchen.content(*id).name.as_str()).collect();
-        names.sort_unstable();
-        names
-    };
-    let mut wanted: Vec<&str> = items.iter().map(String::as_str).collect();
-    wanted.sort_unstable();
-    let is_it = |name: &&String| {
-        kitchen.content_named(name).is_some_and(|content| sorted(&kitchen.content(content).items) == wanted)
-    };
-    question.choices.iter().find(is_it).cloned()
 }
 
 fn ask(kitchen: &Kitchen, words: &DisplayWords, about: &ProbeSubject) -> String {
@@ -170,6 +178,7 @@ fn place_picture(kitchen: &Kitchen, place: LocationId) -> ProbePicture {
 fn choices(kitchen: &Kitchen, words: &DisplayWords, question: &ProbeQuestion) -> Vec<ProbeChoice> {
     let choice = |(index, name): (usize, &String)| {
         let (words, shows) = match &question.about {
+            _ if name == SOMETHING_ELSE => (words.of_name(name), None),
             ProbeSubject::Location { location } => content(kitchen, words, location, name),
             ProbeSubject::Recipe { .. } => recipe(kitchen, words, name),
             ProbeSubject::NextOrder => {
@@ -230,25 +239,4 @@ fn press(kitchen: &Kitchen, words: &DisplayWords, name: &str) -> (String, Option
 
 fn joined(words: &DisplayWords, names: &[String]) -> String {
     names.iter().map(|name| words.of_name(name)).collect::<Vec<_>>().join(" + ")
-}
-
-/// The items from which the participant composes a stack, by slot of the stacking rule, where a list of all stacks
-/// would be too long. The items do not reveal which full stacks are on the menu.
-fn parts(kitchen: &Kitchen, question: &ProbeQuestion, choices: &[ProbeChoice]) -> Vec<Vec<String>> {
-    let has_stacks = choices.iter().any(|choice| matches!(choice.shows, Some(ProbePicture::Stack(_))));
-    if choices.len() <= MOST_CARDS || !has_stacks {
-        return Vec::new();
-    }
-    let items: Vec<ContentId> = question.choices.iter().filter_map(|name| kitchen.content_named(name)).collect();
-    let items: Vec<ContentId> = items.into_iter().filter(|id| kitchen.content(*id).items.len() == 1).collect();
-    let meets = |a: ContentId, b: ContentId| kitchen.stacked(a, b).is_some() || kitchen.stacked(b, a).is_some();
-    let mut slots: Vec<Vec<ContentId>> = Vec::new();
-    for &item in items.iter().filter(|&&item| items.iter().any(|&other| meets(item, other))) {
-        match slots.iter_mut().find(|slot| slot.iter().all(|&other| !meets(item, other))) {
-            Some(slot) => slot.push(item),
-            None => slots.push(vec![item]),
-        }
-    }
-    let name = |id: &ContentId| kitchen.content(*id).name.clone();
-    slots.iter().map(|slot| slot.iter().map(name).collect()).collect()
 }

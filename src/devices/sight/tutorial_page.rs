@@ -2,8 +2,10 @@
 
 use serde::Serialize;
 
+use super::content::{ShownContent, button_place, shown};
 use super::displayed_item::{SceneElement, spot};
-use tomcom_core::kitchen::{Agent, DishId, Kitchen};
+use super::probe_page::{DisplayedProbe, practice};
+use tomcom_core::kitchen::{Agent, DishId, Kitchen, LocationId, State};
 use tomcom_session::Session;
 use tomcom_session::plan::{TutorialStep, TutorialStepKind, TutorialTarget};
 use tomcom_session::tutorial::TutorialState;
@@ -29,7 +31,8 @@ pub struct DisplayedTutorial {
     pub presses: Option<[usize; 2]>,
     /// Whether the tutorial's page says how buttons are pressed: in the first step that requires presses.
     pub explains_buttons: bool,
-    /// Whether the participant's last press was another than the required press; false once no press is required.
+    /// Whether the participant's last press was another than the required press, which is false once no press is
+    /// required; or whether the last answer to the practised probe was wrong.
     pub missed: bool,
     /// Recipe cards, while they are shown.
     pub cards: Vec<RecipeCard>,
@@ -40,6 +43,19 @@ pub struct DisplayedTutorial {
     pub left_s: Option<f64>,
     /// Comprehension question of the step, if it has one.
     pub question: Option<DisplayedTutorialQuestion>,
+    /// Question of a freeze probe, until it is answered rightly.
+    pub probe: Option<DisplayedProbe>,
+    /// What the robot does, again and again; empty where it rests.
+    pub robot: Vec<ShownRobotPress>,
+}
+
+/// A press of the robot that the tutorial shows.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ShownRobotPress {
+    /// Where the hand goes, in fractions of the display.
+    pub to: [f64; 2],
+    /// What each location shows after the press.
+    pub contents: Vec<ShownContent>,
 }
 
 /// Something that the tutorial marks with a frame.
@@ -115,12 +131,25 @@ pub(super) fn tutorial(session: &Session) -> Option<DisplayedTutorial> {
         hint,
         presses: step.has_presses().then_some([state.presses, step.presses.len()]),
         explains_buttons: tutorial.has_first_presses(state.step),
-        missed: state.is_missed(step),
+        missed: state.is_missed(step) || (step.kind == TutorialStepKind::Probe && state.wrong.is_some()),
         cards: dishes.map(|index| card(kitchen, DishId(index as u8))).collect(),
         seconds: step.seconds.filter(|_| step.is_timed() && are_shown),
         left_s: state.cards_left_s(step),
         question: (step.kind == TutorialStepKind::Question).then(|| question(step, state)),
+        probe: step.about.as_ref().filter(|_| !state.is_done()).and_then(|_| practice(session)),
+        robot: if step.kind == TutorialStepKind::Robot { robot_presses(session, step, state) } else { Vec::new() },
     })
+}
+
+fn robot_presses(session: &Session, step: &TutorialStep, state: &TutorialState) -> Vec<ShownRobotPress> {
+    let kitchen = &session.kitchen;
+    let buttons = step.presses.iter().filter_map(|name| kitchen.button_named(Agent::Robot, name));
+    let show = |now: &mut State, button| {
+        *now = kitchen.try_press(*now, Agent::Robot, button).after;
+        let contents = (0..kitchen.locations.len()).map(|index| shown(kitchen, *now, LocationId(index as u8)));
+        Some(ShownRobotPress { to: button_place(session, button), contents: contents.collect() })
+    };
+    buttons.scan(state.kitchen, show).collect()
 }
 
 fn frame(kitchen: &Kitchen, target: TutorialTarget) -> TutorialFrameTarget {

@@ -169,8 +169,9 @@ impl SimulatedParticipant {
 
     /// The participant's answer to a question about a state aspect: one of the choices, or `None` for "I don't know".
     ///
-    /// If the true value is as probable as any other value, the participant answers the true value: so the answer is
-    /// right exactly where the belief is not false.
+    /// What is not among the choices is the last of them, which then stands for all else. If the true value is as
+    /// probable as any other value, the participant answers the true value: so the answer is right where the belief is
+    /// not false.
     pub fn answer(
         &self,
         state: State,
@@ -187,6 +188,7 @@ impl SimulatedParticipant {
             true => &labels[self.kitchen.true_value(state, aspect)],
             false => &labels[self.beliefs.most_likely(aspect)],
         };
+        let believed = choices.iter().find(|choice| *choice == believed).or(choices.last())?;
         if chance(&mut random, self.person.answers_wrong) {
             let others: Vec<&String> = choices.iter().filter(|choice| *choice != believed).collect();
             return (!others.is_empty()).then(|| others[random.random_range(0..others.len())].clone());

@@ -10,7 +10,7 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::kitchen::Agent;
 use tomcom_devices::display::{DisplayHandle, DisplayServer, ParticipantResponse};
-use tomcom_devices::sight::{DisplayContent, RobotHand, RobotHandPose, choice_made_of, scene, sight, time_left};
+use tomcom_devices::sight::{DisplayContent, RobotHand, RobotHandPose, scene, sight, time_left};
 use tomcom_session::admit::admit;
 use tomcom_session::probes::ProbeEvent;
 use tomcom_session::protocol::ProtocolEvent;
@@ -146,8 +146,8 @@ fn answered(reply: ParticipantResponse, session: &Session, now: SessionTime) -> 
             });
             is_over.then(|| practise(session, TutorialEvent::CardsHidden { step })).flatten()
         }
-        ParticipantResponse::Believe { probe, question, choice, items, sure } => {
-            believe(session, (probe, question), (choice, &items), sure)
+        ParticipantResponse::Believe { probe, question, choice, sure } => {
+            believe(session, (probe, question), choice, sure)
         }
     }
 }
@@ -200,13 +200,12 @@ fn practise(session: &Session, event: TutorialEvent) -> Option<Event> {
 fn believe(
     session: &Session,
     (probe, question): (u32, u32),
-    (choice, items): (Option<u16>, &[String]),
+    choice: Option<u16>,
     confidence: Option<u8>,
 ) -> Option<Event> {
     let open = session.probes.open.as_ref().filter(|open| open.number == probe)?;
     let (_, asked) = open.question().filter(|(index, _)| *index as u32 + 1 == question)?;
     let answer = match choice {
-        _ if !items.is_empty() => Some(choice_made_of(&session.kitchen, asked, items)?),
         Some(number) => Some(asked.choices.get(usize::from(number).checked_sub(1)?)?.clone()),
         None => None,
     };

@@ -19,7 +19,7 @@ use crate::header::RecordedFile;
 use crate::plan::{PlanSpec, QuestionnaireSpec, Study};
 use crate::questionnaire::Questionnaire;
 use crate::settings::SettingError;
-use crate::tutorial::Tutorial;
+use crate::tutorial::{Tutorial, TutorialStepKind};
 use crate::wall_display::DisplaySpec;
 use crate::{SessionSpec, ranges};
 use tomcom_core::base::number_range::OutOfRange;
@@ -150,9 +150,10 @@ fn read_tutorial(session: &Path, text: &str, spec: &SessionSpec, kitchen: &Kitch
     let remedy = "the path of a tutorial, relative to the session file";
     check_there(&path, session, text, ("plan.tutorial", 0, file), remedy)?;
     let text = read_text(&path)?;
-    let tutorial: Tutorial = parse(&path, &text)?;
+    let mut tutorial: Tutorial = parse(&path, &text)?;
     let checked = tutorial.check().and_then(|()| tutorial.check_kitchen(kitchen));
     checked.map_err(|error| wrong_setting(&path, &text, error))?;
+    tutorial.steps.retain(|step| step.kind != TutorialStepKind::Probe || spec.probes.is_some());
     Ok(Some(tutorial))
 }
 
@@ -270,8 +271,9 @@ fn read_words(session: &Path, text: &str, spec: &mut SessionSpec) -> FileResult<
         return Ok(());
     }
     let path = session.parent().unwrap_or(Path::new(".")).join(language);
-    let remedy = "\"en\", \"de\", or the path of a file with words, relative to the session file";
-    check_there(&path, session, text, ("display.language", 0, language), remedy)?;
+    let codes = DisplaySpec::LANGUAGES.map(|code| format!("\"{code}\"")).join(", ");
+    let remedy = format!("{codes}, or the path of a file with words, relative to the session file");
+    check_there(&path, session, text, ("display.language", 0, language), &remedy)?;
     let LanguageFile(mut words) = parse(&path, &read_text(&path)?)?;
     words.append(&mut spec.display.words);
     spec.display.words = words;

@@ -105,8 +105,9 @@ pub struct ProbedQuestion {
     pub kind: ProbeQuestionKind,
     /// Name of the state aspect that the question is about; for questions of level 2, name of the kind of question.
     pub aspect: String,
-    pub inclusion: f64,
-    /// Name of the right answer; `None` for questions of level 2 if the trial ended before the right answer was known.
+    /// The question as it was drawn. Truth, answer and predictions are among its choices.
+    pub asked: ProbeQuestion,
+    /// Name of the right answer, one of the question's choices; `None` for questions of level 2 if the trial ended before the right answer was known.
     pub truth: Option<String>,
     pub response: ProbeResponse,
     /// Confidence of the participant in the answer, from 1 to 3, if it was asked for.
@@ -119,7 +120,7 @@ pub struct ProbedQuestion {
 impl ProbedQuestion {
     /// The inverse of the inclusion probability (Horvitz and Thompson 1952).
     pub fn weight(&self) -> f64 {
-        1.0 / self.inclusion
+        1.0 / self.asked.inclusion
     }
 
     /// "I don't know" is wrong. `None` without an answer in time, or if the truth is unknown.
@@ -278,7 +279,10 @@ impl ProbeCollector {
     fn frozen(&self, now: SessionTime, question: &ProbeQuestion, follower: &SessionFollower) -> ProbedQuestion {
         let (session, kitchen) = (&follower.session, &follower.session.kitchen);
         let (kind, aspect) = subject(kitchen, &question.about);
-        let truth = aspect.map(|aspect| label(kitchen, aspect, kitchen.true_value(session.state, aspect)));
+        let truth = aspect.map(|aspect| {
+            let truth = label(kitchen, aspect, kitchen.true_value(session.state, aspect));
+            question.choice_for(&truth).to_string()
+        });
         ProbedQuestion {
             probe: 0,
             question: 0,
@@ -287,23 +291,36 @@ impl ProbeCollector {
             uses_estimate: false,
             kind,
             aspect: aspect.map_or(kind.name().to_string(), |aspect| kitchen.aspects[aspect.index()].name.clone()),
-            inclusion: question.inclusion,
+            asked: question.clone(),
             truth,
             response: ProbeResponse::Missing,
             confidence: None,
             took_s: None,
-            frozen: aspect.map(|aspect| self.aspect(now, aspect, follower)),
+            frozen: aspect.map(|aspect| self.aspect(now, aspect, question, follower)),
         }
     }
 
-    fn aspect(&self, now: SessionTime, aspect: AspectId, follower: &SessionFollower) -> AspectAtFreeze {
+    /// In terms of the question's choices.
+    fn aspect(
+        &self,
+        now: SessionTime,
+        aspect: AspectId,
+        question: &ProbeQuestion,
+        follower: &SessionFollower,
+    ) -> AspectAtFreeze {
         let (session, kitchen) = (&follower.session, &follower.session.kitchen);
         let labels = &kitchen.aspects[aspect.index()].labels;
         // The belief estimate at the freeze includes the effect of the time since the last event.
         let estimate =
             follower.probed.as_ref().map_or(follower.filter.belief(), |probed| &probed.belief).aspect(aspect);
         let truth = kitchen.true_value(session.state, aspect);
-        let estimate_p_truth = estimate.mean()[truth];
+        let chosen = |label: &String| question.choice_for(label).to_string();
+        let mut estimate_p: BTreeMap<String, f64> = BTreeMap::new();
+        for (label, p) in labels.iter().zip(estimate.mean()) {
+            *estimate_p.entry(chosen(label)).or_default() += p;
+        }
+        // Values that share a choice have a Dirichlet distribution together, too.
+        let estimate_p_truth = estimate_p[&chosen(&labels[truth])];
         let [of_truth, of_others] = [estimate_p_truth, 1.0 - estimate_p_truth].map(|mean| mean * estimate.precision());
         let believed = self.belief.as_ref().filter(|(at, _)| *at == now);
         let believed = believed.and_then(|(_, witness)| witness.aspects.get(aspect.index()));
@@ -312,17 +329,16 @@ impl ProbeCollector {
             AspectKind::Recipe(_) => None,
         };
         // Recipes do not change, so for a recipe the usual value and the value last seen are the true one.
-        let of_code =
-            |code: u8| label(kitchen, aspect, kitchen.aspects[aspect.index()].index_of(code).unwrap_or(truth));
-        let of_location = |code: Option<u8>| code.map_or_else(|| label(kitchen, aspect, truth), of_code);
+        let of_code = |code: u8| chosen(&labels[kitchen.aspects[aspect.index()].index_of(code).unwrap_or(truth)]);
+        let of_location = |code: Option<u8>| code.map_or_else(|| chosen(&labels[truth]), of_code);
         AspectAtFreeze {
-            values: labels.len(),
-            estimate: label(kitchen, aspect, estimate.most_likely()),
-            estimate_p: labels.iter().cloned().zip(estimate.mean().iter().copied()).collect::<BTreeMap<_, _>>(),
+            values: estimate_p.len(),
+            estimate: chosen(&labels[estimate.most_likely()]),
+            estimate_p,
             estimate_p_truth,
             estimate_p_false: regularized_incomplete_beta(FALSE_BELOW, of_truth, of_others),
             believed: believed
-                .map(|own| RecordedBeliefAtFreeze { believes: own.believes.clone(), p_truth: own.p_truth }),
+                .map(|own| RecordedBeliefAtFreeze { believes: chosen(&own.believes), p_truth: own.p_truth }),
             changed_s: location.and_then(|location| self.seen.changed_s(session, location)),
             changed_unseen: location.map(|location| self.seen.is_changed_unseen(location)),
             usual: of_location(location.map(|location| self.seen.usual(session, location))),
@@ -340,11 +356,12 @@ impl ProbeCollector {
             _ => None,
         };
         for question in self.questions.iter_mut().filter(|question| question.truth.is_none()) {
-            question.truth = match question.kind {
-                ProbeQuestionKind::NextOrder => served.map(|order| kitchen.location(order).name.clone()),
-                ProbeQuestionKind::NextPress if press.agent == Agent::Robot => Some(button.name.clone()),
+            let truth = match question.kind {
+                ProbeQuestionKind::NextOrder => served.map(|order| kitchen.location(order).name.as_str()),
+                ProbeQuestionKind::NextPress if press.agent == Agent::Robot => Some(button.name.as_str()),
                 _ => None,
             };
+            question.truth = truth.map(|truth| question.asked.choice_for(truth).to_string());
         }
     }
 

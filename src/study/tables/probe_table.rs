@@ -56,12 +56,14 @@ impl CsvRow for ProbeRow<'_> {
             "kind", "", "what is asked: order, recipe or place (what is); next_order, next_press (level 2: what comes \
                 next)" => row.question.kind.name();
             "aspect", "", "as in beliefs; of level 2 the kind" => &row.question.aspect;
-            "inclusion", "probability", "probability with which the question was drawn" => row.question.inclusion;
+            "inclusion", "probability", "probability with which the question was drawn" => row.question.asked.inclusion;
             "weight", "", "1 / inclusion" => row.question.weight();
             "in_main_results", "", "whether the question is part of the main results: scheduled, about what is, \
                 answered in time; see trials.counts, too" => row.question.is_counted();
-            "truth", "", "true value; of level 2 what came next, empty: nothing did" => row.question.truth.as_ref();
-            "answer", "", "the answered value; empty: \"I don't know\", or none in time" => row.question.answer();
+            "truth", "", "the right answer: the true value, or \"something else\" where that was not shown (so in all \
+                columns); of level 2 what came next, empty: nothing did" => row.question.truth.as_ref();
+            "answer", "", "the answered value; \"something else\": none that was shown; empty: \"I don't know\", or none in \
+                time" => row.question.answer();
             "response", "", "answered (a value), unsure (\"I don't know\"), skipped (the wizard skipped the rest of \
                 the probe) or missing (nothing in time)" => row.response();
             "wrong", "", "whether the answer differs from the truth; \"I don't know\" does; empty: no answer, or no \

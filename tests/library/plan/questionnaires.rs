@@ -40,7 +40,12 @@ fn each_kind_of_item_takes_its_answers_and_no_others() {
         (
             form("vision_aids"),
             vec![options(&[]), options(&["glasses"]), options(&["glasses", "lenses"])],
-            vec![options(&["glasses", "glasses"]), options(&["monocle"]), text("glasses")],
+            vec![
+                options(&["glasses", "glasses"]),
+                options(&["monocle"]),
+                options(&["none", "glasses"]),
+                text("glasses"),
+            ],
         ),
         (form("robots"), vec![number(1), number(5)], vec![number(0), number(6), number(i64::MIN), text("1")]),
         (
@@ -55,6 +60,25 @@ fn each_kind_of_item_takes_its_answers_and_no_others() {
         for answer in wrong {
             assert!(form.admit(&answer).is_err(), "{answer:?} for {form:?}");
         }
+    }
+}
+
+#[test]
+fn an_option_that_stands_alone_and_the_others_take_each_other_back() {
+    let asked = shipped("demographics.toml");
+    let form = asked.form(asked.position("vision_aids").expect("an item")).expect("a form");
+    let mut given = None;
+    for (option, wanted) in [
+        (1, vec!["glasses"]),
+        (2, vec!["glasses", "lenses"]),
+        (0, vec!["none"]),
+        (2, vec!["lenses"]),
+        (0, vec!["none"]),
+        (0, vec![]),
+    ] {
+        given = form.choose(option, given.as_ref());
+        assert_eq!(given, Some(options(&wanted)), "after option {option}");
+        assert_eq!(form.admit(given.as_ref().expect("an answer")), Ok(()));
     }
 }
 

@@ -4,12 +4,25 @@ use tomcom::run::leaving::TutorialProgress;
 use tomcom_devices::sight::{DisplayStage, ShownContent, sight};
 use tomcom_session::plan::{PhaseSpec, Tutorial, TutorialStep, TutorialStepKind};
 use tomcom_session::protocol::StudyPhase;
+use tomcom_session::settings::ProbeSpec;
 use tomcom_session::tutorial::{TutorialEvent, TutorialPageTurner};
 
 use super::{files, folder, study};
 use crate::support::*;
 
 const BY_PARTICIPANT: TutorialPageTurner = TutorialPageTurner::Participant;
+
+/// A tutorial of the project, with all its steps.
+fn tutorial(name: &str) -> Tutorial {
+    let text = fs::read_to_string(Path::new("sessions/tutorials").join(name)).expect("the project's file");
+    toml::from_str(&text).expect("a tutorial")
+}
+
+#[test]
+fn a_probe_is_practised_only_where_the_session_has_probes() {
+    assert!(tutorial("sushi.toml").position("probe").is_some());
+    assert_eq!(files().tutorial.expect("a tutorial").position("probe"), None, "sessions/study.toml has none");
+}
 
 /// A recording of the tutorial alone.
 struct Lesson {
@@ -20,7 +33,9 @@ struct Lesson {
 
 impl Lesson {
     fn new(out: &Path) -> Lesson {
-        let files = files();
+        let mut files = files();
+        files.spec.probes = Some(ProbeSpec::default());
+        files.tutorial = Some(tutorial("sushi.toml"));
         let spec = files.study().and_then(|study| study.tutorial_alone("P07")).expect("a tutorial");
         let mut header = LogHeader::new(spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
         header.started = Some("2026-03-14T09:00:00.000Z".to_string());
@@ -98,6 +113,21 @@ fn a_participant_goes_through_the_whole_tutorial() {
                 assert!(lesson.turn(BY_PARTICIPANT).is_some(), "the cards are left before their time");
                 assert_eq!(lesson.tell(TutorialEvent::CardsHidden { step: step.id.clone() }), None);
             }
+            TutorialStepKind::Probe => {
+                let probe = sight(lesson.session()).tutorial.and_then(|page| page.probe).expect("a question");
+                let right = probe.choices.iter().find(|choice| choice.words == "cut salmon").expect("what lies there");
+                for (choice, is_done) in [(0, false), (right.number as u8, true)] {
+                    assert_eq!(lesson.tell(TutorialEvent::Answered { step: step.id.clone(), choice }), None);
+                    let page = sight(lesson.session()).tutorial.expect("a page");
+                    assert_eq!((page.done, page.missed, page.probe.is_some()), (is_done, !is_done, !is_done));
+                }
+            }
+            TutorialStepKind::Robot => {
+                let page = sight(lesson.session());
+                let shown = page.tutorial.expect("a page").robot;
+                assert_eq!(shown.len(), step.presses.len());
+                assert!(shown.iter().all(|press| press.contents != page.contents), "{shown:?}");
+            }
             TutorialStepKind::Text | TutorialStepKind::Signal => {}
         }
         assert_eq!(lesson.turn(BY_PARTICIPANT), None, "{}", step.id);
@@ -107,11 +137,12 @@ fn a_participant_goes_through_the_whole_tutorial() {
     assert_eq!((session.presses, session.state), ([0, 0], session.kitchen.empty_state()), "a trial has nothing of it");
     assert!(session.timeline.is_empty() && session.served.is_empty());
     let wrong = session.tutorial().expect("a tutorial").1.wrong_answers.iter().sum::<u32>();
-    assert_eq!(wrong, 3, "each question was answered wrongly once");
+    assert_eq!(wrong, 4, "each question was answered wrongly once");
     assert_eq!(sight(session).stage, DisplayStage::TutorialOver);
     let reached = TutorialProgress::from_session(session).expect("a tutorial");
-    let presses = session.tutorial().expect("a tutorial").0.steps.iter().map(|step| step.presses.len() as u64).sum();
-    assert_eq!((reached.done, reached.presses, reached.wrong_answers), (reached.steps, presses, 3));
+    let steps = session.tutorial().expect("a tutorial").0.steps.iter().filter(|step| step.has_presses());
+    let presses = steps.map(|step| step.presses.len() as u64).sum();
+    assert_eq!((reached.done, reached.presses, reached.wrong_answers), (reached.steps, presses, 4));
     assert_eq!(lesson.input(Event::SessionEnded), None);
     let log = lesson.log.folder().join(LOG_NAME);
     lesson.log.flush().expect("the log can be written");
@@ -223,8 +254,7 @@ fn a_plan_has_the_tutorial_once_and_on_the_display_only() {
 fn german_and_english_ask_for_the_same_and_fit_their_kitchen() {
     for layout in ["sushi", "burger"] {
         let [english, german] = ["toml", "de.toml"].map(|ending| {
-            let text = fs::read_to_string(format!("sessions/tutorials/{layout}.{ending}")).expect("the project's file");
-            let tutorial: Tutorial = toml::from_str(&text).expect("a tutorial");
+            let tutorial = tutorial(&format!("{layout}.{ending}"));
             tutorial.check().and_then(|()| tutorial.check_kitchen(&kitchen(layout))).expect("it fits the kitchen");
             tutorial
         });
@@ -235,6 +265,7 @@ fn german_and_english_ask_for_the_same_and_fit_their_kitchen() {
             let asked = |step: &TutorialStep| (step.id.clone(), step.kind, step.presses.clone(), step.right);
             assert_eq!(asked(one), asked(other), "{layout}");
             assert_eq!((&one.point_at, &one.dish, one.seconds), (&other.point_at, &other.dish, other.seconds));
+            assert_eq!(one.about, other.about);
         }
     }
 }
@@ -261,6 +292,8 @@ fn a_wrong_tutorial_names_file_line_and_what_would_be_right() {
         ("dish = \"salmon maki\"", "dish = \"pizza\"", "pizza"),
         ("point_at = [\"order_1\", ", "point_at = [\"order_9\", ", "order_9"),
         ("right = 3", "right = 4", "right = 4"),
+        ("about = \"cutting_board\"", "about = \"oven\"", "oven"),
+        ("presses = [\"take tuna\", \"counter\"]", "presses = [\"take crab\"]", "take crab"),
         ("id = \"ask_crab\"", "id = \"ask_shape\"", "twice"),
         ("seconds = 60.0", "seconds = -1.0", "seconds = -1"),
         ("plate\", \"serve 1\"", "plate\"", "do not serve"),

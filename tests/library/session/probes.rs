@@ -1,8 +1,8 @@
 //! Freeze probes: when they begin and end, which questions they ask, and that they change nothing else.
 
 use tomcom_session::headless;
-use tomcom_session::probe_sampling::{aspect, questions};
-use tomcom_session::probes::{ProbeDelayReason, ProbeEndReason, ProbeOrigin};
+use tomcom_session::probe_sampling::{SOMETHING_ELSE, aspect, questions};
+use tomcom_session::probes::{ProbeDelayReason, ProbeEndReason, ProbeOrigin, ProbeSubject};
 use tomcom_session::settings::ProbeSpec;
 
 use super::{at, check, engine, kitchen, press, refused};
@@ -85,16 +85,27 @@ fn a_probe_freezes_the_task_asks_one_question_after_another_and_counts_down() {
 }
 
 #[test]
-fn after_its_time_a_probe_closes_and_late_answers_are_refused() {
+fn after_its_time_a_question_is_missed_and_late_answers_are_refused() {
     let mut engine = on_request(|_| ());
     check(&mut engine, &[(0.0, Event::TrialStarted), (20.0, requested())]);
     until(&mut engine, 24.0);
     let late = answered(&engine, 1);
-    let events = probes_of(&until(&mut engine, 45.5));
-    assert_eq!(events, [(at(45.0), ProbeEvent::Closed { probe: 1, reason: ProbeEndReason::TimeOver })]);
-    assert!(refused(&mut engine, 46.0, late).contains("questions are over"), "late answers");
-    let events = probes_of(&until(&mut engine, 50.0));
-    assert_eq!(events, [(at(48.0), ProbeEvent::Ended { probe: 1 })]);
+    let number = engine.session().probes.open.as_ref().map_or(0, |open| open.questions.len()) as u32;
+    // The first question came at 21 s; each has 12 s.
+    let events = probes_of(&until(&mut engine, 33.5));
+    assert_eq!(events, [(at(33.0), ProbeEvent::Asked { probe: 1, question: 2 })]);
+    assert!(refused(&mut engine, 34.0, late.clone()).contains("another question"), "late answers");
+    let answer = answered(&engine, 2);
+    check(&mut engine, &[(35.0, answer)]);
+    let end_s = if number == 2 { 35.0 } else { 35.0 + 12.0 * f64::from(number - 2) };
+    let events = probes_of(&until(&mut engine, end_s + 0.5));
+    let closed = ProbeEvent::Closed { probe: 1, reason: ProbeEndReason::TimeOver };
+    assert!(number == 2 || events.last() == Some(&(at(end_s), closed)), "{events:?}");
+    assert!(refused(&mut engine, end_s + 1.0, late).contains("questions are over"), "late answers");
+    let answers = &engine.session().probes.open.as_ref().expect("a probe").answers;
+    assert_eq!((answers[0].is_none(), answers[1].is_some()), (true, true));
+    let events = probes_of(&until(&mut engine, end_s + 5.0));
+    assert_eq!(events, [(at(end_s + 3.0), ProbeEvent::Ended { probe: 1 })]);
 }
 
 #[test]
@@ -147,13 +158,15 @@ fn a_pause_in_a_probe_stops_its_time_and_the_trial_goes_on_after_the_probe_only(
     let took =
         engine.session().probes.open.as_ref().and_then(|open| open.answers[0].as_ref().map(|answer| answer.took));
     assert_eq!(took, Some(at(2.0)), "1 s before the pause and 1 s after it");
+    // The second question is shown since 103 s; a pause of it does not count.
+    check(&mut engine, &[(104.0, Event::TrialPaused), (114.0, Event::TrialResumed)]);
     let events = probes_of(&until(&mut engine, 200.0));
-    assert!(
-        events.contains(&(at(125.0), ProbeEvent::Closed { probe: 1, reason: ProbeEndReason::TimeOver })),
-        "{events:?}"
-    );
-    assert_eq!(events.last(), Some(&(at(128.0), ProbeEvent::Ended { probe: 1 })));
-    assert_eq!(engine.session().trial_clock(at(128.0)), at(20.0));
+    let (time, next) = &events[0];
+    let is_next = matches!(next, ProbeEvent::Asked { question: 3, .. } | ProbeEvent::Closed { .. });
+    assert!(*time == at(125.0) && is_next, "{events:?}");
+    let (ended, last) = events.last().expect("events");
+    assert_eq!(last, &ProbeEvent::Ended { probe: 1 });
+    assert_eq!(engine.session().trial_clock(*ended), at(20.0));
 }
 
 #[test]
@@ -223,7 +236,8 @@ fn what_questions_teach_changes_the_estimate_of_the_locations_asked_about() {
             spec.robot.initiative_s = 86_400.0;
         });
         check(&mut engine, &[(0.0, Event::TrialStarted), (30.0, requested())]);
-        // Nobody answers: one question is asked.
+        // The wizard skips all questions but the first.
+        check(&mut engine, &[(32.0, probe(ProbeEvent::Skipped { probe: 1, reason: "phone".to_string() }))]);
         until(&mut engine, 58.5);
         let over = &engine.session().probes.over[0];
         assert_eq!(over.shown, Some(0));
@@ -385,7 +399,10 @@ fn a_simulated_participant_answers_what_it_believes() {
                     let held = &belief.aspects[id.index()];
                     let most = held.values.values().copied().fold(0.0, f64::max);
                     match answer {
-                        Some(answer) => assert_eq!((answer, most >= 0.5), (&held.believes, true)),
+                        Some(answer) => {
+                            let question = &asked[*question as usize - 1];
+                            assert_eq!((answer.as_str(), most >= 0.5), (question.choice_for(&held.believes), true));
+                        }
                         None => assert!(most < 0.5, "{held:?}"),
                     }
                     compared.0 += 1;
@@ -469,6 +486,37 @@ fn questions_come_as_often_as_their_recorded_probabilities_say() {
         let stands_for = weights / f64::from(DRAWS);
         assert!((stands_for / aspects as f64 - 1.0).abs() < 0.02, "{stands_for} of {aspects}");
     }
+}
+
+#[test]
+fn a_question_shows_nothing_first_and_at_most_twelve_answers_whatever_is_there() {
+    let session = midway();
+    let spec = ProbeSpec { leave_out: Vec::new(), level_2: true, ..ProbeSpec::default() };
+    let mut other = session.clone();
+    other.state.set_content(session.kitchen.board, session.kitchen.dishes[0].stack());
+    let (mut cut, mut orders) = (0, BTreeSet::new());
+    for probe in 1..=300 {
+        let asked = questions(&session, &spec, probe, None);
+        assert_eq!(asked, questions(&other, &spec, probe, None), "the truth changes nothing");
+        for question in &asked {
+            let choices = &question.choices;
+            assert!(choices.len() <= 12, "{question:?}");
+            let place = |name: &str| choices.iter().position(|choice| choice == name);
+            let nothing = place("empty").or(place("none"));
+            assert!(nothing.is_none_or(|place| place == 0), "{question:?}");
+            let is_location = matches!(question.about, ProbeSubject::Location { .. });
+            assert_eq!(nothing.is_some(), is_location, "{question:?}");
+            if let Some(last) = place(SOMETHING_ELSE) {
+                assert_eq!((last, choices.len()), (11, 12), "{question:?}");
+                assert_eq!(question.choice_for("no such thing"), SOMETHING_ELSE);
+                cut += 1;
+            }
+            if question.about == (ProbeSubject::Location { location: "order_1".to_string() }) {
+                orders.insert(choices.clone());
+            }
+        }
+    }
+    assert!(cut > 100 && orders.len() > 3, "{cut} {orders:?}");
 }
 
 #[test]

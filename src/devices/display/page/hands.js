@@ -71,7 +71,7 @@ const Hands = (() => {
       return;
     }
     // During a freeze probe, no button of the kitchen can be pressed.
-    if (Stage.shown() && Stage.shown().probe) {
+    if (Stage.asks()) {
       if (Probe.press(event.key, isHeld)) event.preventDefault();
       return;
     }
@@ -87,12 +87,12 @@ const Hands = (() => {
   }
 
   function touched(event) {
-    const hit = event.target.closest("[data-button], [data-rate], [data-option], [data-typed], [data-does], [data-turn], [data-choose], [data-believe], [data-unknown], [data-done], [data-sure]");
+    const hit = event.target.closest("[data-button], [data-rate], [data-option], [data-typed], [data-does], [data-turn], [data-choose], [data-believe], [data-unknown], [data-sure]");
     if (!hit || event.button > 0) return;
     event.preventDefault();
     const question = Stage.shown() && Stage.shown().question;
     const lesson = Stage.shown() && Stage.shown().tutorial;
-    if (Stage.shown() && Stage.shown().probe) Probe.touch(hit.dataset);
+    if (Stage.asks()) Probe.touch(hit.dataset);
     else if (lesson && (hit.dataset.turn || hit.dataset.choose)) Tutorial.touch(hit.dataset, lesson);
     else if (hit.dataset.button) press(hit.dataset.button, timeOf(event.timeStamp));
     else if (question) Questions.touch(hit.dataset, question);
@@ -118,7 +118,7 @@ const Hands = (() => {
       now.forEach((isDown, number) => {
         if (!isDown || before[number] || !scene) return;
         Stage.useBadges("pad", pad.mapping === "standard");
-        if (Stage.shown() && Stage.shown().probe) return Probe.press(PAD[number], false);
+        if (Stage.asks()) return Probe.press(PAD[number], false);
         const lesson = Stage.shown() && Stage.shown().tutorial;
         if (lesson && PAD[number] && Tutorial.pad(PAD[number], lesson)) return;
         const button = scene.buttons.find(({ gamepad }) => gamepad === number);

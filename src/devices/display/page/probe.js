@@ -9,9 +9,11 @@ const Probe = (() => {
   const BETWEEN = 0.8, WITHIN = 0.9, AROUND = 2.4, READ = 1.38, HIGHEST = 17, LARGEST = 4.4;
   // An answer counts as lost if no new state follows within this time: then it can be given again.
   const UNHEARD_MS = 2000;
+  // In the last seconds of a question its bar says that the time ends.
+  const ENDS_S = 3;
   let tell = () => {}, key = "", shown = null, parts = null, timer = 0;
-  // Choices that are selected but not sent yet, by number. `waits`: the participant's confidence has to be given first.
-  let chosen = [], waits = false, isTold = false;
+  // Number of the choice that is selected but not sent yet. `waits`: the participant's confidence has to be given first.
+  let chosen = null, waits = false, isTold = false;
 
   const ruler = document.createElement("canvas").getContext("2d");
 
@@ -81,25 +83,25 @@ const Probe = (() => {
   /** Picture of what the question is about, beside the question. */
   const subjectOf = (about, kit) => kit.element("span", "subject", pictureOf(about, kit));
 
-  /** Draws the question, or the text before the first and after the last question. */
+  /** Draws the question, or the text before the first and after the last question; `practise`, in a tutorial, takes the answer, or null when the time is over. */
   function draw(sheet, probe, left, kit) {
     const { element, text, scene } = kit, words = scene.words, now = `${probe.probe}/${probe.question}/${probe.closed}`;
-    if (now !== key) [key, chosen, waits, isTold] = [now, [], false, false];
+    if (now !== key) [key, chosen, waits, isTold] = [now, null, false, false];
     shown = probe;
     const all = element("div", "probing"), bar = element("div", "left");
     all.setAttribute("role", "group");
     parts = { all, buttons: [], kit };
+    const late = probe.late ? [text("p", "late", words[probe.practise ? "tutorial late" : "probe late"])] : [];
     if (probe.closed) {
-      all.append(text("p", "goes-on", words["probe goes on"]), text("p", "seconds", ""));
+      all.append(...late, text("p", "goes-on", words["probe goes on"]), text("p", "seconds", ""));
     } else if (!probe.choices.length) {
       all.append(text("h1", "", words.probe), text("p", "says", words["probe text"]));
     } else {
       const head = element("div", "asks"), title = element("div", "title");
-      title.append(text("p", "count", words["probe count"].replace("#", probe.question).replace("#", probe.of)), text("h2", "", probe.text));
+      title.append(...late, text("p", "count", words["probe count"].replace("#", probe.question).replace("#", probe.of)), text("h2", "", probe.text));
       head.append(...(probe.about ? [subjectOf(probe.about, kit)] : []), title);
       const isCards = probe.choices.some(({ shows }) => shows && shows.recipe), list = element("div", isCards ? "choices cards" : "choices");
       list.append(...probe.choices.map((choice) => choiceOf(choice, kit)));
-      if (probe.parts.length) title.append(text("p", "several", words["probe several"]));
       all.append(head, list, element("div", "row"), bar);
     }
     sheet.replaceChildren(all);
@@ -108,6 +110,7 @@ const Probe = (() => {
       arrange(all.querySelector(".choices"), probe.choices, scene);
       fit(all);
     }
+    for (const one of late) one.setAttribute("role", "alert");
     run(bar, all.querySelector(".seconds"), left);
   }
 
@@ -131,32 +134,28 @@ const Probe = (() => {
     clearInterval(timer);
     const step = () => {
       const now = Math.max(0, left());
+      if (shown.practise && now === 0) return shown.practise(null);
+      bar.classList.toggle("ends", now < ENDS_S);
       bar.style.width = `${Math.min(80, (80 * now) / shown.limit_s).toFixed(1)}%`;
       if (seconds) seconds.textContent = Math.max(1, Math.ceil(now - 0.05));
+      return undefined;
     };
-    step();
     timer = setInterval(step, 100);
+    step();
   }
 
-  const itemOf = (number) => {
-    const { shows } = shown.choices.find((choice) => choice.number === number);
-    return shows && shows.item;
-  };
-  const slotOf = (number) => shown.parts.findIndex((items) => items.includes(itemOf(number)));
-
-  /** Marks the selected choices, and draws the buttons below. */
+  /** Marks the selected choice, and draws the buttons below. */
   function update() {
     const { all, kit } = parts, words = kit.scene.words, row = all.querySelector(".row");
     for (const made of all.querySelectorAll(".choice")) {
-      const isChosen = chosen.includes(Number(made.dataset.believe));
+      const isChosen = chosen === Number(made.dataset.believe);
       made.classList.toggle("chosen", isChosen);
       made.setAttribute("aria-pressed", isChosen);
     }
     row.replaceChildren();
-    const button = (name, value, label, isOpen = true) => {
+    const button = (name, value, label) => {
       const made = kit.text("button", name, label);
-      if (isOpen) made.dataset[name] = value;
-      else made.disabled = true;
+      made.dataset[name] = value;
       row.append(made);
     };
     if (waits) {
@@ -164,37 +163,23 @@ const Probe = (() => {
       for (const step of [1, 2, 3]) button("sure", step, words[`probe sure ${step}`]);
     } else {
       button("unknown", 0, words["probe unknown"]);
-      if (shown.parts.length) button("done", 0, words["probe done"], chosen.length > 0);
     }
-    parts.buttons = [...all.querySelectorAll("button:not(:disabled)")];
+    parts.buttons = [...all.querySelectorAll("button")];
     all.classList.toggle("told", isTold);
   }
 
-  /** Sends the answer: a choice, a stack of items, or that the participant does not know. */
-  function answer(numbers, sure) {
+  /** Sends the answer: a choice, or null: the participant does not know. */
+  function answer(choice, sure) {
+    if (shown.practise) return shown.practise(choice ?? 0);
     isTold = true;
     update();
-    const items = numbers.length > 1 ? numbers.map(itemOf) : [];
-    tell({ kind: "believe", probe: shown.probe, question: shown.question, choice: numbers.length === 1 ? numbers[0] : null, items, sure });
+    tell({ kind: "believe", probe: shown.probe, question: shown.question, choice, sure });
     const told = key;
-    setTimeout(() => { if (key === told && isTold) { isTold = false; update(); } }, UNHEARD_MS);
+    return setTimeout(() => { if (key === told && isTold) { isTold = false; update(); } }, UNHEARD_MS);
   }
 
-  /** A choice is selected. Items of different slots of a stack can be selected together. */
   function choose(number) {
-    const slot = slotOf(number);
-    if (!shown.parts.length) {
-      chosen = [number];
-      return conclude();
-    }
-    if (chosen.includes(number)) chosen = chosen.filter((one) => one !== number);
-    else if (slot < 0) chosen = [number];
-    else chosen = [...chosen.filter((one) => slotOf(one) >= 0 && slotOf(one) !== slot), number];
-    waits = false;
-    return update();
-  }
-
-  function conclude() {
+    chosen = number;
     if (!shown.confidence) return answer(chosen, null);
     waits = true;
     const isByKeys = Boolean(parts.all.querySelector(".at"));
@@ -204,11 +189,10 @@ const Probe = (() => {
   }
 
   /** One of the buttons is touched. */
-  function touch({ believe, unknown, done, sure }) {
+  function touch({ believe, unknown, sure }) {
     if (isTold) return;
     if (believe) choose(Number(believe));
-    else if (unknown) answer([], null);
-    else if (done && chosen.length) conclude();
+    else if (unknown) answer(null, null);
     else if (sure) answer(chosen, Number(sure));
   }
 

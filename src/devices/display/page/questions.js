@@ -4,9 +4,11 @@ const Questions = (() => {
   const SLIDER_END = 100;
   // Longest entry of a number that is kept, in signs, and most digits of a number: beyond them it is refused, not cut.
   const LONGEST_ENTRY = 24, MOST_DIGITS = 15;
+  // A touch within this time after another item appeared was meant for the item before it.
+  const SETTLES_MS = 350;
   // Answer to the present item that is typed or dragged but not sent yet; `isRefused`: somebody tried to go on with it.
   let draft = { item: null, value: null, isRefused: false };
-  let redraw = () => {}, tell = () => {};
+  let redraw = () => {}, tell = () => {}, shownItem = "", settled = 0;
 
   const pending = (question) => (draft.item === question.item ? draft.value : null);
   const keep = (question, value) => { draft = { item: question.item, value, isRefused: false }; };
@@ -16,6 +18,7 @@ const Questions = (() => {
     const { element, text } = kit;
     // Text that is being typed is kept when the item is drawn again.
     redraw = () => draw(sheet, question, words, kit);
+    settle(question, sheet);
     const isConsent = question.form && question.form.kind === "consent";
     const card = element("div", isConsent ? "card question consents" : "card question");
     card.append(text("h2", "", question.title));
@@ -36,16 +39,31 @@ const Questions = (() => {
       }
       card.append(given);
     }
-    const row = element("div", "row");
-    const button = (does, label) => { const made = text("button", does, label); made.dataset.does = does; row.append(made); };
+    // Each button has its place, whatever others there are: a second touch of one never meets another.
+    const row = element("div", "turns");
+    const button = (does, label, isOpen = true) => {
+      const made = text("button", does, label);
+      made.dataset.does = does;
+      if (!isOpen) made.setAttribute("aria-disabled", "true");
+      row.append(made);
+    };
     if (question.before) button("back", words.back);
     if (question.item) button("skip", words.skip);
-    if (question.item && (question.answer !== null || isTyped(question))) button("next", words.next);
-    if (!question.item) button("confirm", words.confirm);
+    if (question.item) button("next", words.next, question.answer !== null || isTyped(question));
+    else button("confirm", words.confirm);
     card.append(row);
     sheet.replaceChildren(card);
     const field = card.querySelector("textarea");
     if (field) { field.focus(); field.setSelectionRange(field.value.length, field.value.length); }
+  }
+
+  /** Another item takes touches once the participant can have seen it. */
+  function settle({ item, title }, sheet) {
+    const now = `${title}/${item}`;
+    if (now === shownItem) return;
+    [shownItem, settled] = [now, performance.now() + SETTLES_MS];
+    sheet.dataset.settles = "";
+    setTimeout(() => { if (shownItem === now) delete sheet.dataset.settles; }, SETTLES_MS);
   }
 
   const isTyped = ({ form }) => form && ["number", "text"].includes(form.kind);
@@ -90,7 +108,9 @@ const Questions = (() => {
       // Signs that belong to no whole number stay in the field, since without them "7,5" would be another number: 75.
       const isOther = value && !isWhole(value) && value !== "-", isEntered = draft.isRefused || value.length >= String(form.max).length;
       const range = `${form.min} – ${form.max} ${form.unit}`, isWrong = isOther || (value && isEntered && !isNumber(form, value));
-      return [entry, text("p", isWrong ? "hint wrong" : "hint", isOther ? `${words["whole number"]} ${range}` : range), pad];
+      const hint = text("p", isWrong ? "hint wrong" : "hint", isOther ? `${words["whole number"]} ${range}` : range);
+      if (isWrong) hint.setAttribute("role", "alert");
+      return [entry, hint, pad];
     },
     text(question, words, { element, text }) {
       const field = element("textarea", ""), hint = text("p", "hint wrong", ""), { length } = question.form;
@@ -102,6 +122,7 @@ const Questions = (() => {
       Object.assign(field, { rows: 3, value: pending(question) ?? question.answer ?? "" });
       field.setAttribute("aria-label", question.text);
       field.addEventListener("input", () => { keep(question, field.value); count(); });
+      hint.setAttribute("role", "alert");
       count();
       return [field, hint];
     },
@@ -168,11 +189,13 @@ const Questions = (() => {
   const skip = (question) => { keep(question, null); give(question, null); };
   const back = (question) => question.before && tell({ kind: "back", item: question.before });
 
+  /** Of several options, one that stands alone takes the others back, and each other one takes it back. */
   function choose(question, id) {
-    if (!question.form.several) return give(question, id);
-    const before = question.answer ?? [];
-    const isChosen = (one) => before.includes(one) !== (one === id);
-    return give(question, question.form.options.map((option) => option.id).filter(isChosen));
+    const { several, options } = question.form, before = question.answer ?? [];
+    if (!several) return give(question, id);
+    const isAlone = (one) => options.some((option) => option.id === one && option.alone);
+    const left = before.includes(id) ? before : before.filter((one) => !isAlone(one) && !isAlone(id));
+    return give(question, options.map((option) => option.id).filter((one) => left.includes(one) !== (one === id)));
   }
 
   /** A sign or the delete key was typed or touched. */
@@ -239,6 +262,7 @@ const Questions = (() => {
 
   /** One of the buttons is touched. */
   function touch({ rate, option, typed, does }, question) {
+    if (performance.now() < settled) return;
     if (rate) give(question, Number(rate));
     else if (option) choose(question, option);
     else if (typed) type(question, typed);

@@ -139,5 +139,5 @@ const Robot = (() => {
     made.hand.dataset.holds = kind;
   }
 
-  return { build, move, hold };
+  return { build, move, hold, pose: () => told };
 })();

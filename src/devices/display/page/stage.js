@@ -344,7 +344,7 @@ const Stage = (() => {
     if (stage === "questionnaire" && sight.question) return Questions.draw(parts.sheet, sight.question, scene.words, { element, text });
     if (sight.tutorial) {
       const recipe = sight.signal && sight.signal.recipe, areas = room.forLesson(parts.all, recipe && parts.cards[recipe.order], sight.tutorial.frames);
-      return Tutorial.draw(parts.sheet, sight.tutorial, { scene, areas, enough: room.enough, badges: badges(), element, text, put, partOf, fitWords });
+      return Tutorial.draw(parts.sheet, sight.tutorial, { scene, areas, enough: room.enough, badges: badges(), element, text, put, partOf, fitWords, contentOf, draws: drawContents, contents: sight.contents });
     }
     Tutorial.end();
     if (sight.probe) return Probe.draw(parts.sheet, sight.probe, left, { scene, element, text, contentOf });
@@ -356,6 +356,10 @@ const Stage = (() => {
     if (stage === "instruction") put(card, parts.free);
     parts.sheet.replaceChildren(card);
     if (stage === "instruction") fitWords(card);
+  }
+
+  function drawContents(contents) {
+    contents.forEach((what, index) => drawLocation(index, what));
   }
 
   /** Shows the target of a gaze accuracy check, alone on the screen, so that nothing else attracts the eyes. */
@@ -392,7 +396,7 @@ const Stage = (() => {
       Sound.say(inWords(sight.signal));
     } else if (shown && shown.signal && !sight.signal) Sound.say("");
     // During a freeze probe the program sends no contents; afterwards the kitchen is as it was.
-    sight.contents.forEach((what, index) => drawLocation(index, what));
+    drawContents(sight.contents);
     drawPresses(sight);
     drawIntention(sight.intention);
     drawRobot(sight.robot_does);
@@ -474,5 +478,5 @@ const Stage = (() => {
     return [(x - box.left) / box.width, (y - box.top) / box.height];
   }
 
-  return { build, show, resize, flash, mark, refuse, sayNothing, label, useBadges, greet, askCode, point, isUpright, scene: () => scene, shown: () => shown };
+  return { build, show, resize, flash, mark, refuse, sayNothing, label, useBadges, greet, askCode, point, isUpright, scene: () => scene, shown: () => shown, asks: () => Boolean(shown && shown.probe) || Tutorial.practises() };
 })();

@@ -3,6 +3,12 @@
 const Tutorial = (() => {
   // What a page with presses can say of them.
   const PRESSED = ["tutorial first press", "tutorial right", "tutorial again"], ASKED = ["tutorial first question", "tutorial other answer"], TICK_MS = 250;
+  const PRACTISED = ["tutorial right", "tutorial probe wrong"];
+  // A press of the robot: the way there, the press, and the rest after it; the hand is down at the end of its way.
+  const WAY_MS = 1600, REST_MS = 700, DOWN_FROM = 0.8, FRAME_MS = 33;
+  let mover = 0, rested = null;
+  // Whether the question of a probe is practised now.
+  let tries = false;
   let timer = 0, ticker = 0, hinter = 0, shownStep = "", endsAt = 0, told = () => {}, marked = [], drawn = null;
   // The choice that arrows or a gamepad are at, counted from 1; 0: none yet.
   let at = 0;
@@ -36,17 +42,61 @@ const Tutorial = (() => {
   }
 
   /** Shows the remaining time of the recipe cards as a bar and in seconds; at its end the program is told. */
-  function count(page, bar) {
+  function count(page, bar, words) {
     clearTimeout(timer);
     clearInterval(ticker);
     if (page.seconds === null) return;
     if (shownStep !== page.step) endsAt = performance.now() + 1000 * page.left_s;
     const left = Math.max(0, endsAt - performance.now()), [line, seconds] = bar.children;
     line.animate([{ width: `${left / page.seconds / 10}%` }, { width: "0%" }], { duration: left, fill: "forwards" });
-    const tick = () => { seconds.textContent = `${Math.max(0, Math.ceil((endsAt - performance.now()) / 1000))} s`; };
+    const tick = () => { seconds.textContent = words.seconds.replace("#", Math.max(0, Math.ceil((endsAt - performance.now()) / 1000))); };
     tick();
     ticker = setInterval(tick, TICK_MS);
     timer = setTimeout(() => told({ kind: "cards_shown", step: page.step }), left);
+  }
+
+  /** Begins the question of a probe; `late`: its time went by before. */
+  function practise(late) {
+    const { sheet, page, kit } = drawn, ends = performance.now() + 1000 * page.probe.limit_s;
+    tries = true;
+    clearMarks();
+    Reason.hide();
+    sheet.classList.add("shaded");
+    const take = (choice) => {
+      if (choice === null) return practise(true);
+      tries = false;
+      draw(sheet, page, kit);
+      return told({ kind: "choose", step: page.step, choice });
+    };
+    Probe.draw(sheet, { ...page.probe, late, practise: take }, () => (ends - performance.now()) / 1000, kit);
+  }
+
+  /** Ends what the robot shows, with the hand where it was before. */
+  function rest() {
+    clearInterval(mover);
+    document.getElementById("stage").classList.remove("moves");
+    if (rested) Robot.move(rested);
+    rested = null;
+  }
+
+  /** Lets the robot's hand press one button after another, from the beginning again when all are pressed. */
+  function demonstrate({ robot }, kit) {
+    const before = rested || Robot.pose();
+    rest();
+    if (!robot.length || !before) return;
+    rested = before;
+    document.getElementById("stage").classList.add("moves");
+    const start = performance.now();
+    let pressed = -1;
+    mover = setInterval(() => {
+      const passed = performance.now() - start, turn = Math.floor(passed / (WAY_MS + REST_MS)), nth = turn % robot.length;
+      const share = Math.min(1, (passed % (WAY_MS + REST_MS)) / WAY_MS), along = Math.min(1, share / DOWN_FROM), eased = along * along * (3 - 2 * along);
+      const from = turn ? robot.at(nth - 1).to : [before.x, before.y], { to } = robot[nth];
+      Robot.move({ ...before, x: from[0] + (to[0] - from[0]) * eased, y: from[1] + (to[1] - from[1]) * eased, down: Math.max(0, (share - DOWN_FROM) / (1 - DOWN_FROM)) });
+      const now = nth + (share === 1 ? 1 : 0);
+      if (now !== pressed) kit.draws(now ? robot[now - 1].contents : kit.contents);
+      pressed = now;
+    }, FRAME_MS);
   }
 
   function cardsOf(page, scene, element, text) {
@@ -85,6 +135,7 @@ const Tutorial = (() => {
 
   /** What was done, or what is still to be done, and the class of the line that says it. `isAsked`: the participant tried to go on before that. */
   function verdictOf(page, isAsked) {
+    if (page.kind === "probe") return page.missed ? ["tutorial probe wrong", "wrong"] : page.done ? ["tutorial right", "right"] : ["", ""];
     const all = page.presses && page.presses[0] === page.presses[1];
     if (isAsked && page.question && page.question.wrong !== null) return ["tutorial other answer", "wrong"];
     if (isAsked) return [`tutorial first ${page.presses ? "press" : page.question ? "question" : "recipes"}`, "wrong"];
@@ -115,15 +166,17 @@ const Tutorial = (() => {
       row.append(made);
     };
     if (page.number > 1) button("back", words.back, true);
-    button("next", page.number === page.of ? words["tutorial end"] : words.next, page.done);
+    const onward = page.number === page.of ? words["tutorial end"] : words.next;
+    button("next", page.probe ? words["tutorial try"] : onward, page.done || page.probe);
     return row;
   }
 
   /** The longest texts that the lines of the card can have until the step is done, line by line. */
-  function longestOf({ presses, question }, words) {
+  function longestOf({ kind, presses, question }, words) {
     const longest = (names) => names.map((name) => words[name]).reduce((a, b) => (b.length > a.length ? b : a));
     // The explanation is not known before it is needed; its length is. Few letters are as wide as these, and few words as long, which leave lines unfilled.
     if (question) return [wrongOf(words, "nnnnnnnnnnn ".repeat(Math.ceil(question.explanation_length / 10))), longest(ASKED)];
+    if (kind === "probe") return [longest(PRACTISED)];
     return presses ? [longest(PRESSED)] : [];
   }
 
@@ -146,8 +199,10 @@ const Tutorial = (() => {
   /** Draws the card of the step: in the free place of the kitchen, or large where the kitchen does not matter. */
   function draw(sheet, page, kit, isAsked = false) {
     const { scene, badges, element, text, partOf } = kit, words = scene.words, isLarge = page.kind === "recipes" || page.kind === "question";
-    if (shownStep !== page.step) at = 0;
-    drawn = { sheet, kit };
+    if (shownStep !== page.step) [at, tries] = [0, false];
+    drawn = { sheet, page, kit };
+    if (tries && page.probe) return practise(false);
+    Probe.end();
     const card = element("div", `card lesson ${isLarge ? "large" : ""}`), bar = element("div", "left", "<i></i><span></span>");
     card.append(text("p", "count", `${page.number} / ${page.of}`), text("h2", "", page.title), text("p", "says", isTimeOver(page) ? words["tutorial recipes over"] : page.text));
     if (page.number === 1) card.append(text("p", "says how", words[navigator.maxTouchPoints ? "tutorial turn" : "tutorial turn keys"]));
@@ -161,12 +216,16 @@ const Tutorial = (() => {
     sheet.classList.toggle("shaded", isLarge);
     sheet.replaceChildren(card);
     fit(card, isLarge, page, kit);
-    count(page, bar);
+    count(page, bar, words);
     point(page, partOf, isAsked);
+    if (shownStep !== page.step) demonstrate(page, kit);
     shownStep = page.step;
+    return undefined;
   }
 
   function end() {
+    rest();
+    tries = false;
     clearMarks();
     clearTimeout(timer);
     clearInterval(ticker);
@@ -196,6 +255,7 @@ const Tutorial = (() => {
   function key(pressed, page, isHeld) {
     const by = { ArrowUp: -1, ArrowDown: 1 }[pressed];
     if (by && isOpen(page)) return go(by, page);
+    if (page.probe && ["ArrowRight", "Enter"].includes(pressed)) return isHeld || practise(false) || true;
     const message = meant(pressed, page);
     if (message && !isHeld) told(message);
     return Boolean(message);
@@ -203,7 +263,7 @@ const Tutorial = (() => {
 
   /** Says what is missing, if a key that goes on is pressed before the step is done; whether it was such a key. */
   function refuse(pressed, page) {
-    const goesOn = ["ArrowRight", "Enter"].includes(pressed) && !page.done;
+    const goesOn = ["ArrowRight", "Enter"].includes(pressed) && !page.done && !page.probe;
     if (goesOn) {
       // One message at a time.
       Reason.hide();
@@ -216,9 +276,12 @@ const Tutorial = (() => {
   const pad = (pressed, page) => (!page.presses || page.done) && (key(pressed, page, false) || refuse(pressed, page));
 
   function touch({ choose, turn }, page) {
-    if (turn === "next" && refuse("ArrowRight", page)) return;
-    told(choose ? { kind: "choose", step: page.step, choice: Number(choose) } : { kind: "turn", step: page.step, forward: turn === "next" });
+    if (turn === "next" && page.probe) return practise(false);
+    if (turn === "next" && refuse("ArrowRight", page)) return undefined;
+    return told(choose ? { kind: "choose", step: page.step, choice: Number(choose) } : { kind: "turn", step: page.step, forward: turn === "next" });
   }
 
-  return { draw, end, buttonOf, key, refuse, pad, touch, begin: (tell) => { told = tell; } };
+  const practises = () => tries;
+
+  return { draw, end, practises, buttonOf, key, refuse, pad, touch, begin: (tell) => { told = tell; } };
 })();

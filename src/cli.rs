@@ -204,7 +204,7 @@ fn correct(args: &CorrectArgs) -> Result<(), Failure> {
 fn examine(args: &DoctorArgs) -> Result<(), Failure> {
     let files = options::session_or_default(args.session.as_deref())?;
     let found = doctor::examine(&files.spec, &files.kitchen.kitchen, &args.out);
-    print(args.format, &found, || doctor::describe(&found))?;
+    print(args.format, &found, || doctor::describe(&found, doctor::columns()))?;
     if found.healthy { Ok(()) } else { Err(Failure::No) }
 }
 

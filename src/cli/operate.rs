@@ -25,7 +25,7 @@ use tomcom_session::watcher::SenderComparisonSettings;
 pub(super) struct OperateArgs {
     /// The session file; by default sessions/default.toml, or the built-in one.
     pub(super) session: Option<PathBuf>,
-    /// Continue a recording that was cut off, in a new part beside it; a running trial is paused.
+    /// Continue a recording that was cut off or ended early, in a new part beside it; a running trial is paused.
     #[arg(long = "continue", value_name = "RECORDING", conflicts_with_all = ["session", "code", "participant", "gaze", "gaze_file", "gaze_start", "arm", "listen", "condition", "concept", "seed", "rerun_listen", "out"])]
     pub(super) recording: Option<PathBuf>,
     #[command(flatten)]

@@ -21,8 +21,10 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
         Feature::Rerun.require()?;
     }
     let mut files = files::read_session(&args.session)?;
-    let is_simulated = files.spec.participant.kind == ParticipantKind::Simulated;
-    if !is_simulated || !matches!(files.spec.participant.gaze, GazeSource::Simulated | GazeSource::None) {
+    let participant = &files.spec.participant;
+    let is_simulated = participant.kind == ParticipantKind::Simulated
+        && matches!(participant.gaze, GazeSource::Simulated | GazeSource::None);
+    if files.spec.plan.is_none() && !is_simulated {
         let found = "a session whose participant or gaze is not simulated".to_string();
         let remedy = "kind = \"simulated\", and gaze = \"simulated\" or \"none\"";
         return Err(wrong_argument(&args.session, found, remedy));

@@ -2,7 +2,7 @@
 
 use super::beliefs::{beliefs, visibility};
 use super::console_model::{ComparisonAction, ConsoleCommand, ConsoleMessage, ConsoleModel, Dialog, NoticeLevel};
-use super::key_action::{KeyAction, KeyLayer};
+use super::key_action::{KeyAction, KeyLayer, ViewAction};
 use super::key_press::{self, is_right_after_list};
 use super::panels::{self, Panel};
 use super::possible::effects;
@@ -88,6 +88,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
             model.say(NoticeLevel::Done, words);
             None
         }
+        KeyAction::Look(ViewAction::All) if !panels::is_away(model) => act(model, session, KeyAction::Quit),
         KeyAction::Look(at) => {
             panels::look(model, session, at);
             None

@@ -9,7 +9,7 @@ use super::coding::RaterSession;
 use super::gaze_check::AccuracyCheckAction;
 use super::key_action::{KeyAction, KeyLayer};
 use super::keys::KeyBindings;
-use super::lists::{ListCursor, Picker};
+use super::lists::{ListCursor, Picker, PickerKind};
 use super::mouse::SendConfirmation;
 use super::panels::Panel;
 use super::preflight::{GazePairing, ParticipantDisplayHealth};
@@ -52,6 +52,8 @@ pub enum Dialog {
     /// Gaze accuracy check: the targets, then the result.
     Calibration,
     Note(TextInput),
+    /// Text input of further words beside the chosen reason of an abort or an exclusion.
+    Reason(PickerKind, String, TextInput),
     /// Text input of an answer to the shown questionnaire item: words or a number.
     Answer(TextInput),
     Difference(Vec<String>),
@@ -142,6 +144,10 @@ pub struct ConsoleModel {
     /// What the session reads from its gaze file; `None` for other gaze sources.
     pub recorded_gaze: Option<RecordedGazeSummary>,
     pub display: Option<ParticipantDisplayHealth>,
+    /// In a plan: number of participants who have done everything, and of all of them.
+    pub participants_done: Option<(usize, usize)>,
+    /// Whether the terminal is to ring with the next frame.
+    pub rings: bool,
     /// Session times of the human's errors, in ascending order.
     pub errors: Vec<SessionTime>,
     /// Number of the human's presses whose judgement rests on a cost to go that is not proven.
@@ -201,6 +207,8 @@ impl ConsoleModel {
             gaze_pairing: None,
             recorded_gaze: None,
             display: None,
+            participants_done: None,
+            rings: false,
             errors: Vec::new(),
             unproven: 0,
             signals: SignalJudge::default(),

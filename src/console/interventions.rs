@@ -42,6 +42,11 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: ManualAct
         ManualAction::Abort if !matches!(session.phase, TrialPhase::Running | TrialPhase::Paused) => {
             refuse(model, "no trial runs that could be aborted")
         }
+        // The trial stands while the wizard chooses a reason and adds words: the space bar types a space in them.
+        ManualAction::Abort if session.is_running() => {
+            model.dialog = Some(Dialog::Pick(Picker::new(PickerKind::Abort)));
+            send(model, session, Event::TrialPaused, NoticeLevel::Done, "the trial is paused; esc keeps it")
+        }
         ManualAction::Abort => ask(model, PickerKind::Abort),
         ManualAction::Preflight if session.phase != TrialPhase::Ready => {
             refuse(model, "preflight checks are shown only before the trial starts")
@@ -50,9 +55,12 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: ManualAct
             model.dialog = Some(Dialog::Preflight);
             None
         }
-        ManualAction::NoteInWords if !types_notes(session.phase) => {
-            refuse(model, "notes can be typed only while no trial runs, since the space bar stops the robot")
+        ManualAction::NoteInWords if session.is_running() => {
+            let note = String::new();
+            let words = "time marked: its words are typed when the trial stands";
+            send(model, session, Event::Marker { note }, NoticeLevel::Done, words)
         }
+        ManualAction::NoteInWords if session.phase == TrialPhase::Closed => refuse(model, "the session is over"),
         ManualAction::NoteInWords => {
             model.dialog = Some(Dialog::Note(TextInput::default()));
             None
@@ -75,11 +83,6 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: ManualAct
             None => refuse(model, "no freeze probe is open"),
         },
     }
-}
-
-/// Whether a note can be typed now: the space bar types a space in it, so no trial may run.
-pub(super) fn types_notes(phase: TrialPhase) -> bool {
-    !matches!(phase, TrialPhase::Running | TrialPhase::Closed)
 }
 
 /// Number of the freeze probe whose remaining questions can be skipped now.
@@ -117,6 +120,7 @@ fn ask(model: &mut ConsoleModel, kind: PickerKind) -> Option<ConsoleCommand> {
     None
 }
 
+/// Handles a key in the text input of a note: the words of the oldest time mark that has none, or else of a new note.
 pub(super) fn write(
     model: &mut ConsoleModel,
     session: &Session,
@@ -126,17 +130,64 @@ pub(super) fn write(
     model.dialog = None;
     match code {
         KeyCode::Esc => None,
-        KeyCode::Enter if line.text().is_empty() => None,
-        KeyCode::Enter => {
-            let note = line.text();
-            send(model, session, Event::Marker { note }, NoticeLevel::Done, "the note is saved")
-        }
+        KeyCode::Enter => match session.open_marks.as_slice() {
+            [] if line.text().is_empty() => None,
+            [] => send(model, session, Event::Marker { note: line.text() }, NoticeLevel::Done, "the note is saved"),
+            [(marker, _), others @ ..] => {
+                let event = Event::MarkerWorded { marker: *marker, note: line.text() };
+                model.dialog = (!others.is_empty()).then(|| Dialog::Note(TextInput::default()));
+                send(model, session, event, NoticeLevel::Done, "the words of the time mark are saved")
+            }
+        },
         _ => {
             line.key(code);
             model.dialog = Some(Dialog::Note(line));
             None
         }
     }
+}
+
+/// Handles a key in the text input beside a chosen reason.
+pub(super) fn word_reason(
+    model: &mut ConsoleModel,
+    session: &Session,
+    (kind, reason, mut line): (PickerKind, String, TextInput),
+    code: KeyCode,
+) -> Option<ConsoleCommand> {
+    model.dialog = None;
+    match code {
+        KeyCode::Esc => ask(model, kind),
+        KeyCode::Enter => {
+            let words = line.text();
+            give_reason(model, session, kind, if words.is_empty() { reason } else { format!("{reason}: {words}") })
+        }
+        _ => {
+            line.key(code);
+            model.dialog = Some(Dialog::Reason(kind, reason, line));
+            None
+        }
+    }
+}
+
+/// Aborts or excludes the trial, or skips the rest of a probe, for this reason.
+fn give_reason(
+    model: &mut ConsoleModel,
+    session: &Session,
+    kind: PickerKind,
+    reason: String,
+) -> Option<ConsoleCommand> {
+    let (event, words) = match kind {
+        PickerKind::Abort => (Event::TrialAborted { reason }, "the trial is aborted".to_string()),
+        PickerKind::SkipProbe(probe) => {
+            let words = "the other questions of the freeze probe are skipped";
+            (Event::Probe(ProbeEvent::Skipped { probe, reason }), words.to_string())
+        }
+        _ => {
+            let words = format!("the trial is excluded: {reason}");
+            (Event::TrialExcluded { reason }, words)
+        }
+    };
+    send(model, session, event, NoticeLevel::Done, &words)
 }
 
 pub(super) fn pick(
@@ -174,23 +225,11 @@ pub(super) fn pick(
             let button = kitchen.button(Agent::Robot, button).name.clone();
             send(model, session, Event::RobotDriven { by: Sender::Wizard, button }, NoticeLevel::Done, &words)
         }
-        (PickerKind::Abort, PickerAnswer::Reason(reason)) => {
-            send(model, session, Event::TrialAborted { reason }, NoticeLevel::Done, "the trial is aborted")
+        (kind @ (PickerKind::Abort | PickerKind::Exclude), PickerAnswer::Reason(reason)) if !session.is_running() => {
+            model.dialog = Some(Dialog::Reason(kind, reason, TextInput::default()));
+            None
         }
-        (PickerKind::SkipProbe(probe), PickerAnswer::Reason(reason)) => {
-            let event = ProbeEvent::Skipped { probe, reason };
-            send(
-                model,
-                session,
-                Event::Probe(event),
-                NoticeLevel::Done,
-                "the other questions of the freeze probe are skipped",
-            )
-        }
-        (_, PickerAnswer::Reason(reason)) => {
-            let words = format!("the trial is excluded: {reason}");
-            send(model, session, Event::TrialExcluded { reason }, NoticeLevel::Done, &words)
-        }
+        (kind, PickerAnswer::Reason(reason)) => give_reason(model, session, kind, reason),
         (_, PickerAnswer::Content(_)) => None,
     }
 }

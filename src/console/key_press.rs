@@ -49,7 +49,7 @@ pub(super) fn press(
         // A trial goes on by itself after a freeze probe, even while a note is typed.
         Some(KeyAction::StopRobot) if session.is_running() => stop_robot(model, session),
         // In text input, where the robot stands, the space bar types a space instead of stopping it.
-        _ if matches!(model.dialog, Some(Dialog::Note(_) | Dialog::Answer(_))) => {
+        _ if matches!(model.dialog, Some(Dialog::Note(_) | Dialog::Reason(..) | Dialog::Answer(_))) => {
             in_text(model, session, (code, chord), touch)
         }
         Some(KeyAction::StopRobot) => stop_robot(model, session),
@@ -102,6 +102,9 @@ fn in_text(
     }
     match model.dialog.clone() {
         Some(Dialog::Note(line)) => interventions::write(model, session, line, code),
+        Some(Dialog::Reason(kind, reason, line)) => {
+            interventions::word_reason(model, session, (kind, reason, line), code)
+        }
         Some(Dialog::Answer(line)) => form::type_answer(model, session, line, code),
         _ => None,
     }
@@ -325,6 +328,6 @@ pub(super) fn is_right_after_list(model: &ConsoleModel) -> bool {
 /// Whether a second press shortly after the first counts although the terminal cannot tell it from a held key. It does
 /// not count for actions that toggle, nor for actions that are recorded each time.
 pub(super) fn may_follow_at_once(action: &KeyAction) -> bool {
-    let once = [ManualAction::HoldRobot, ManualAction::SkipPress].map(KeyAction::Manual);
+    let once = [ManualAction::HoldRobot, ManualAction::SkipPress, ManualAction::NoteInWords].map(KeyAction::Manual);
     !matches!(action, KeyAction::Advance | KeyAction::SwitchLayer | KeyAction::Note(_)) && !once.contains(action)
 }

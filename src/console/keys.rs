@@ -100,8 +100,8 @@ impl KeyBindings {
         self
     }
 
-    /// Adds the keys of a rater: letters of signals then code false beliefs, so no letter quits the program, and the
-    /// arrow keys select an error. Removes keys that would reveal estimates or sent signals to the rater.
+    /// Adds the keys of a rater: letters of signals then code false beliefs, and the arrow keys select an error. Removes
+    /// keys that would reveal estimates or sent signals to the rater.
     pub fn with_coding(mut self, kitchen: &Kitchen) -> KeyBindings {
         use ReplayAction::{BackTo, On};
         use ReplayLandmark::{FalseBelief, Signal};

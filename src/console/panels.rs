@@ -41,6 +41,12 @@ pub fn look(model: &mut ConsoleModel, session: &Session, look: ViewAction) {
     }
 }
 
+/// Whether a panel is at full size, or an earlier time shown: what the key of one step back undoes.
+pub(super) fn is_away(model: &ConsoleModel) -> bool {
+    let has_chosen = model.coding.as_ref().is_some_and(|coding| coding.chosen.is_some());
+    model.alone.is_some() || model.events_back > 0 || model.timeline_back_s > 0 || has_chosen
+}
+
 pub fn leaf(model: &mut ConsoleModel, look: ViewAction) {
     let is_forward = matches!(look, ViewAction::Next | ViewAction::Forward | ViewAction::Later);
     model.help_from = match is_forward {
@@ -128,6 +134,7 @@ fn name(dialog: &Dialog) -> &'static str {
         Dialog::Preflight => "preflight",
         Dialog::Calibration => "calibration",
         Dialog::Note(_) => "note",
+        Dialog::Reason(..) => "reason",
         Dialog::Answer(_) => "answer",
         Dialog::Difference(_) => "difference",
         Dialog::Report(_) => "report",

@@ -4,7 +4,7 @@ use super::actions::refusal;
 use super::beliefs::{beliefs, visibility};
 use super::console_model::{ComparisonAction, ConsoleModel, Dialog, Playback, ReplayAction, SPEEDS};
 use super::form::sheet;
-use super::interventions::{can_redo, skippable, types_notes};
+use super::interventions::{can_redo, skippable};
 use super::key_action::{KeyAction, KeyBinding, ManualAction, RaterAction, ViewAction};
 use super::key_press::is_right_after_list;
 use super::preflight;
@@ -50,6 +50,7 @@ pub(super) fn acts_on_sheet(session: &Session, action: &KeyAction) -> bool {
         || matches!(
             action,
             KeyAction::Help
+                | KeyAction::Look(ViewAction::All)
                 | KeyAction::Palette
                 | KeyAction::Quit
                 | KeyAction::StopRobot
@@ -67,7 +68,7 @@ fn reaches(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool 
         // Enter answers the question whether to send, and esc closes it, so both keys lose their usual action.
         Some(Dialog::Send(_)) => !matches!(action, KeyAction::Accept | KeyAction::Look(ViewAction::All)),
         // In text input the space bar types a space instead of stopping the robot, unless the trial goes on.
-        Some(Dialog::Note(_) | Dialog::Answer(_)) => stops && session.is_running(),
+        Some(Dialog::Note(_) | Dialog::Reason(..) | Dialog::Answer(_)) => stops && session.is_running(),
         Some(Dialog::Report(_)) => false,
         Some(Dialog::Preflight) => match action {
             KeyAction::Advance => preflight::all_ok(&preflight::checks(session, model)),
@@ -102,7 +103,6 @@ fn does(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {
         KeyAction::ResumeRobot => admits(Event::RobotResumed),
         KeyAction::Manual(action) => intervenes(session, *action),
         KeyAction::Move(to) => model.playback.as_ref().is_some_and(|playback| moves(playback, *to)),
-        KeyAction::Look(ViewAction::All) => model.alone.is_some() || model.events_back > 0 || model.timeline_back_s > 0,
         KeyAction::Belief => {
             visibility(session, model) >= WizardVisibility::Belief && !beliefs(session, model).is_empty()
         }
@@ -137,7 +137,7 @@ fn intervenes(session: &Session, action: ManualAction) -> bool {
         ManualAction::Redo => can_redo(session),
         ManualAction::Preflight => phase == TrialPhase::Ready,
         ManualAction::Calibrate => admits(Event::Calibration(GazeCheckEvent::begin())),
-        ManualAction::NoteInWords => types_notes(phase),
+        ManualAction::NoteInWords => phase != TrialPhase::Closed,
         ManualAction::AskProbe => admits(Event::Probe(ProbeEvent::Requested)),
         ManualAction::SkipProbe => skippable(session).is_some(),
         ManualAction::Exclude => !matches!(phase, TrialPhase::Ready | TrialPhase::Closed),

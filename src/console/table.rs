@@ -142,7 +142,7 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
         let help = format!("record note {digit} of the session file");
         lines.push(wizards(line(&name, &[KeyChord::char(digit)], KeyAction::Note(index), NOTES, &help, footer)));
     }
-    let help = "type a note (while no trial runs)";
+    let help = "mark this time, to be worded later; while no trial runs: type a note";
     lines.push(wizards(line(
         "note_in_words",
         &[KeyChord::char('0')],
@@ -198,7 +198,6 @@ pub fn replay() -> Vec<KeyBinding> {
     ];
     let of_move =
         |name, keys: &[KeyChord], to, help, footer| line(name, keys, KeyAction::Move(to), REPLAY, help, footer);
-    let quit = [KeyChord::char('q'), KeyChord::ctrl('c')];
     let mut lines = vec![
         of_move(
             "play_pause",
@@ -207,7 +206,7 @@ pub fn replay() -> Vec<KeyBinding> {
             "play or pause the recording",
             Some("play/pause"),
         ),
-        line("quit", &quit, KeyAction::Quit, CONSOLE, "quit", Some("quit")),
+        line("quit", &[KeyChord::ctrl('c')], KeyAction::Quit, CONSOLE, "quit", Some("quit")),
         line("belief", &[KeyChord::ctrl('b')], KeyAction::Belief, CONSOLE, BELIEF, None),
         palette(),
         line("help", &[KeyChord::char('?')], KeyAction::Help, CONSOLE, "show this help", Some("help")),
@@ -312,7 +311,13 @@ fn looks(next: &[KeyChord]) -> [KeyBinding; 5] {
     [
         line("next_panel", next, KeyAction::Look(ViewAction::Next), CONSOLE, panels, Some("panels")),
         look("last_panel", BackTab, ViewAction::Last, "show the previous panel at full size", None),
-        look("all_panels", Esc, ViewAction::All, "show all panels, at the present time", Some("all panels")),
+        look(
+            "all_panels",
+            Esc,
+            ViewAction::All,
+            "one step back: all panels at the present time, then quit",
+            Some("back"),
+        ),
         look("back", Up, ViewAction::Back, "scroll events or timeline back", None),
         look("forward", Down, ViewAction::Forward, "scroll events or timeline forward again", None),
     ]

@@ -1,5 +1,5 @@
-//! Single-line text input: the wizard's note while no trial runs, or a typed answer before or after a trial. Only here
-//! the space bar types a space instead of stopping the robot, since the robot stands.
+//! Single-line text input: the wizard's note or reason while no trial runs, or a typed answer before or after a trial.
+//! Only here the space bar types a space instead of stopping the robot, since the robot stands.
 
 use crossterm::event::KeyCode;
 
@@ -90,7 +90,7 @@ pub fn refusal_of_paste(text: Option<&str>) -> &'static str {
 pub(super) fn paste(model: &mut ConsoleModel, session: &Session, text: Option<&str>) -> Option<ConsoleCommand> {
     let Some(text) = text else { return refuse(model, refusal_of_paste(text)) };
     let pasted = match &mut model.dialog {
-        Some(Dialog::Note(line) | Dialog::Answer(line)) => line.paste(text),
+        Some(Dialog::Note(line) | Dialog::Reason(_, _, line) | Dialog::Answer(line)) => line.paste(text),
         Some(Dialog::Pick(picker)) => {
             picker.cursor.paste(text);
             Ok(())

@@ -14,6 +14,7 @@ use serde::Serialize;
 
 use super::ask::ask;
 use super::terminal::theme;
+use crate::console::text_columns::wrap;
 use crate::console::view::theme::TerminalBackground;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_session::SessionSpec;
@@ -27,6 +28,8 @@ use tomcom_session::settings::ConsoleSpec;
 const ROOMY: (u16, u16) = (120, 40);
 /// Smallest terminal in which the console is usable, in columns and rows; `tomcom doctor` warns below [`ROOMY`].
 const WORKABLE: (u16, u16) = (80, 24);
+/// Column at which the findings stand.
+const INDENT: u16 = 26;
 /// Date before which this program did not exist; a clock that shows an earlier date was never set.
 const WRITTEN: &str = "2025-01-01";
 
@@ -40,38 +43,81 @@ pub struct DoctorReport {
 
 /// Checks everything that a session with these settings needs; `out` is the folder for its recordings.
 pub fn examine(spec: &SessionSpec, kitchen: &Kitchen, out: &Path) -> DoctorReport {
-    let mut checks = terminal(&spec.console);
+    let mut checks = terminal(spec);
     let place = folder(out);
     // The free disk space matters only if the folder for recordings can be written to.
     let room = (place.verdict == PreflightVerdict::Ok).then(|| space(free_bytes(&existing(out)).ok()));
     checks.push(place);
     checks.extend(room);
-    checks.extend([wall_clock(), timer(), devices::display(spec)]);
+    checks.extend([wall_clock(), timer()]);
+    checks.extend(devices::display(spec));
     #[cfg(feature = "rerun")]
     checks.push(viewer());
     checks.extend(left_out());
-    checks.push(devices::lsl(spec));
+    checks.extend(devices::lsl(spec));
     checks.extend(devices::gaze(spec, kitchen));
     let healthy = checks.iter().all(|check| check.verdict != PreflightVerdict::Failed);
     DoctorReport { healthy, checks }
 }
 
-pub fn describe(findings: &DoctorReport) -> String {
-    let line = |check: &PreflightCheck| {
+/// The findings as text, in lines of at most so many columns.
+pub fn describe(findings: &DoctorReport, columns: u16) -> String {
+    let indented = |first: &str, text: &str| {
+        let lines = wrap(text, columns.saturating_sub(INDENT).max(INDENT));
+        let starts = std::iter::once(first).chain(std::iter::repeat(""));
+        let lines =
+            starts.zip(&lines).map(|(start, line)| format!("{start:indent$}{line}\n", indent = usize::from(INDENT)));
+        lines.collect::<String>()
+    };
+    let told = |check: &PreflightCheck| {
         let mark = match check.verdict {
             PreflightVerdict::Ok => "ok    ",
             PreflightVerdict::Warning => "warn  ",
             PreflightVerdict::Failed => "FAILED",
         };
-        let remedy = check.remedy.as_ref().map_or(String::new(), |remedy| format!("{:26}fix: {remedy}\n", ""));
-        format!("{mark}  {:<16}  {}\n{remedy}", check.name, check.found)
+        let remedy = check.remedy.as_ref().map_or(String::new(), |remedy| indented("", &format!("fix: {remedy}")));
+        indented(&format!("{mark}  {:<16}  ", check.name), &check.found) + &remedy
     };
-    findings.checks.iter().map(line).collect()
+    let lines: String = findings.checks.iter().map(told).collect();
+    lines + &wrap(&findings.conclusion(), columns).join("\n") + "\n"
 }
 
-fn terminal(spec: &ConsoleSpec) -> Vec<PreflightCheck> {
+impl DoctorReport {
+    /// Whether a session can begin, and what is wrong for what.
+    fn conclusion(&self) -> String {
+        let wrong = |verdict: PreflightVerdict| {
+            let of_it = self.checks.iter().filter(|check| check.verdict == verdict);
+            let mut told: Vec<String> =
+                of_it.map(|check| format!("{} ({})", check.name, purpose(&check.name))).collect();
+            told.dedup();
+            told.join(", ")
+        };
+        let (failed, limited) = (wrong(PreflightVerdict::Failed), wrong(PreflightVerdict::Warning));
+        match (failed.is_empty(), limited.is_empty()) {
+            (true, true) => "ready: this session has everything that it needs".to_string(),
+            (true, false) => format!("ready; not perfect: {limited}"),
+            (false, _) => format!("NOT READY: {failed}"),
+        }
+    }
+}
+
+/// What a check is about is needed for.
+fn purpose(check: &str) -> &'static str {
+    match check {
+        "terminal" | "terminal size" | "colours" | "key releases" | "mouse" => "for the console",
+        "recordings" | "free space" => "to record",
+        "wall clock" | "timer" => "for times in recordings",
+        "wall display" => "for the participant's page",
+        "viewer" => "for Rerun",
+        "lsl" => "for the Lab Streaming Layer",
+        "build" => "for parts that this program was built without",
+        _ => "for gaze",
+    }
+}
+
+fn terminal(spec: &SessionSpec) -> Vec<PreflightCheck> {
     if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
-        let remedy = "run tomcom in a terminal, not through a pipe";
+        let remedy = "run tomcom in a terminal; without one: tomcom simulate";
         return vec![PreflightCheck::new(
             "terminal",
             PreflightVerdict::Failed,
@@ -79,7 +125,7 @@ fn terminal(spec: &ConsoleSpec) -> Vec<PreflightCheck> {
             remedy,
         )];
     }
-    let mut checks = vec![screen_size(), colours(spec)];
+    let mut checks = vec![screen_size(), colours(&spec.console)];
     let keys = match supports_keyboard_enhancement() {
         Ok(true) => (PreflightVerdict::Ok, "the terminal reports key releases: a held key is told from a second press"),
         _ => (
@@ -90,18 +136,24 @@ fn terminal(spec: &ConsoleSpec) -> Vec<PreflightCheck> {
     let remedy = "use a terminal with the kitty keyboard protocol (kitty, foot, WezTerm, Ghostty), without a \
                   multiplexer";
     checks.push(PreflightCheck::new("key releases", keys.0, keys.1, remedy));
+    if !spec.is_gaze_of_console_mouse() {
+        return checks;
+    }
     let mouse = match mouse_mode() {
         Some(true) => (PreflightVerdict::Ok, "the terminal knows mouse reports (SGR)"),
         Some(false) => (PreflightVerdict::Warning, "the terminal does not know mouse reports (SGR)"),
         None => (PreflightVerdict::Warning, "the terminal does not say whether it knows mouse reports"),
     };
-    checks.push(PreflightCheck::new(
-        "mouse",
-        mouse.0,
-        mouse.1,
-        "matters for --gaze mouse only: try the mouse, or use another terminal",
-    ));
+    checks.push(PreflightCheck::new("mouse", mouse.0, mouse.1, "try the mouse, or use another terminal"));
     checks
+}
+
+/// Columns in which the findings are written: those of the terminal, if they go to one.
+pub fn columns() -> u16 {
+    match io::stdout().is_terminal() {
+        true => size().map_or(WORKABLE.0, |(columns, _)| columns),
+        false => u16::MAX,
+    }
 }
 
 fn screen_size() -> PreflightCheck {

@@ -21,7 +21,7 @@ pub struct TerminalError(pub io::Error);
 pub enum LiveError {
     /// The wizard's console cannot be opened.
     #[error(transparent)]
-    #[diagnostic(help("run it in a terminal, not through a pipe"))]
+    #[diagnostic(help("run it in a terminal; without one: tomcom simulate sessions/default.toml"))]
     Terminal(#[from] TerminalError),
     /// A key binding of the console is invalid.
     #[error(transparent)]

@@ -32,6 +32,10 @@ const WATCH: Duration = Duration::from_millis(250);
 pub(super) enum LoopEvent {
     /// The program has to end: a termination signal arrived, or the terminal was closed.
     EndRequest,
+    /// The shell stops the program (kill -TSTP): the terminal is about to be given back.
+    Suspend,
+    /// The program was continued after it had been stopped: another one may have used the terminal.
+    Continued,
     /// An input from the terminal: key, mouse, pasted text, new size or focus.
     Terminal(ConsoleMessage),
     EngineDue,
@@ -125,6 +129,15 @@ pub(super) async fn run<S: ConsoleShell>(
     while !station.screen.is_lost() {
         match next_event(shell, station, &mut ticks).await {
             LoopEvent::EndRequest => return Ok(None),
+            event @ (LoopEvent::Suspend | LoopEvent::Continued) => {
+                let stops = matches!(event, LoopEvent::Suspend);
+                shell.take(event)?;
+                station.set_up_again(stops).await?;
+                // The terminal can have another size by now; a frame is drawn in any case.
+                let (columns, rows) = TerminalScreen::size().map_err(TerminalError)?;
+                shell.take(LoopEvent::Terminal(ConsoleMessage::Resized(columns, rows)))?;
+                ticks.frame = None;
+            }
             LoopEvent::FrameDue => {
                 ticks.frame = Some(Instant::now());
                 draw(shell, &mut station.screen)?;
@@ -164,7 +177,7 @@ async fn next_event<S: ConsoleShell>(shell: &mut S, station: &mut OperatorStatio
     let frame = ticks.frame.map_or_else(Instant::now, |last| last + due.frame_after);
     tokio::select! {
         biased;
-        message = station.input.next() => message.map_or(LoopEvent::EndRequest, LoopEvent::Terminal),
+        event = station.input.next() => event,
         () = until(due.engine) => LoopEvent::EngineDue,
         () = until(due.target) => LoopEvent::TargetDue,
         Some(input) = station.display.next() => LoopEvent::Page(input),

@@ -53,7 +53,8 @@ impl TutorialProgress {
 /// Result of a live session: its recording, its summary, and how the wizard left it.
 #[derive(Clone, Debug)]
 pub struct LiveOutcome {
-    pub folder: PathBuf,
+    /// `None` if nothing happened, so that the recording was removed.
+    pub folder: Option<PathBuf>,
     /// How the wizard left the recording.
     pub leaving: LeavingReason,
     pub figures: TrialSummary,
@@ -68,7 +69,8 @@ pub struct LiveOutcome {
 impl LiveOutcome {
     /// The result of the live session as text.
     pub fn describe(&self) -> String {
-        let folder = self.folder.display();
+        let Some(folder) = &self.folder else { return "nothing was recorded: no trial was begun".to_string() };
+        let folder = folder.display();
         let presses = count(self.figures.human_actions + self.figures.robot_actions, "press", "presses");
         let signals = count(self.figures.signals, "signal", "signals");
         let served = count(self.figures.served.len() as u64, "order", "orders");

@@ -1,4 +1,4 @@
-//! Numbers about closed recordings, kept from one list of recordings to the next: to count errors, a recording must be
+//! Numbers about whole recordings, kept from one list of recordings to the next: to count errors, a recording must be
 //! read and its presses judged.
 //!
 //! The numbers are in the user's folder for caches (`$XDG_CACHE_HOME/tomcom` or `~/.cache/tomcom`), not beside the
@@ -21,6 +21,7 @@ use tomcom_session::log::{LOG_NAME, corrected_code};
 use tomcom_session::settings::Condition;
 use tomcom_session::study_arm::StudyArm;
 use tomcom_session::{Event, TimestampedEvent};
+use tomcom_study::analysis::recording_summary::RecordingKind;
 
 /// Number of bytes at the end of a log that its digest covers.
 const TAIL: u64 = 4096;
@@ -29,7 +30,7 @@ const MOST: usize = 50_000;
 /// Largest length of a log's header that is read, in bytes; no header is longer.
 const MAX_HEADER: u64 = 1 << 24;
 
-/// Numbers about a closed recording that the cache keeps.
+/// Numbers about a whole recording that the cache keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CachedRecordingNumbers {
     pub arm: StudyArm,
@@ -37,6 +38,7 @@ pub struct CachedRecordingNumbers {
     pub trial_s: f64,
     /// Number of the human's presses that were errors.
     pub errors: u64,
+    pub kind: RecordingKind,
 }
 
 /// A line of the cache file: the digest of a log, and the numbers about its recording.

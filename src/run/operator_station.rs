@@ -13,10 +13,10 @@ use tokio::sync::oneshot;
 use tokio::time::timeout;
 
 use super::error::{LiveError, TerminalError};
-use crate::console::ConsoleMessage;
 use crate::console::preflight::GazePairing;
 use crate::console::view::theme::Theme;
-use crate::run::terminal::{TerminalScreen, asked_to_end, outlive_file_limits, theme};
+use crate::run::event_loop::LoopEvent;
+use crate::run::terminal::{JobControl, TerminalScreen, asked_to_end, outlive_file_limits, theme};
 use crate::run::terminal_input::TerminalInput;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_devices::gaze_file::{self, GazeFile};
@@ -30,6 +30,8 @@ use tomcom_session::settings::{ConsoleSpec, GazeSource};
 
 /// Largest number of tracker messages that are processed together; more would delay the wizard's keys.
 const PACKET: usize = 32;
+/// Longest wait for the signal that continued the program.
+const CONTINUED: Duration = Duration::from_millis(200);
 /// Longest wait for the program Pupil Capture to finish its last request.
 const LAST_REQUEST: Duration = Duration::from_secs(2);
 
@@ -59,6 +61,7 @@ pub(super) struct OperatorStation {
 /// The wizard's input from the terminal, and termination signals from the system.
 pub(super) struct OperatorInput {
     terminal: TerminalInput,
+    jobs: JobControl,
     end: Pin<Box<dyn Future<Output = io::Result<()>>>>,
 }
 
@@ -114,20 +117,35 @@ impl OperatorStation {
         let screen = TerminalScreen::take().map_err(TerminalError)?;
         let theme = theme(console, screen.ground);
         let terminal = TerminalInput::start().map_err(TerminalError)?;
-        let input = OperatorInput { terminal, end: Box::pin(asked_to_end()) };
+        let jobs = JobControl::start().map_err(TerminalError)?;
+        let input = OperatorInput { terminal, jobs, end: Box::pin(asked_to_end()) };
         let (tracker, display, lsl) = (GazeTracker::default(), StationDisplay::default(), LslOutput::default());
         Ok(OperatorStation { screen, theme, input, tracker, display, lsl })
+    }
+
+    /// Sets the terminal up again after the program was stopped; with `stops`, gives the terminal back and stops the
+    /// program first.
+    ///
+    /// # Errors
+    /// The terminal was closed meanwhile.
+    pub async fn set_up_again(&mut self, stops: bool) -> Result<(), TerminalError> {
+        if stops {
+            TerminalScreen::stop_program().map_err(TerminalError)?;
+            // The signal by which the shell continued the program is this one's, and no further one.
+            let _ = timeout(CONTINUED, self.input.jobs.next()).await;
+        }
+        self.screen.set_up_again().map_err(TerminalError)
     }
 }
 
 impl OperatorInput {
-    /// Waits for the wizard's next input; `None` if the program has to end, because of a termination signal or because
-    /// the terminal was closed.
-    pub async fn next(&mut self) -> Option<ConsoleMessage> {
+    /// Waits for the wizard's next input, or for a signal; the program has to end also if the terminal was closed.
+    pub async fn next(&mut self) -> LoopEvent {
         tokio::select! {
             biased;
-            _ = &mut self.end => None,
-            message = self.terminal.next() => message,
+            _ = &mut self.end => LoopEvent::EndRequest,
+            signal = self.jobs.next() => signal,
+            message = self.terminal.next() => message.map_or(LoopEvent::EndRequest, LoopEvent::Terminal),
         }
     }
 }

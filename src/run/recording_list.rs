@@ -16,9 +16,11 @@ use crate::run::terminal::TerminalScreen;
 use tomcom_core::measures::errors::PressJudge;
 use tomcom_session::apply;
 use tomcom_session::files::file_error::{FileError, FileResult};
-use tomcom_session::log::{LogEnding, LogReader};
+use tomcom_session::log::LogReader;
 use tomcom_session::settings::ConsoleSpec;
-use tomcom_study::analysis::recording_summary::{ExclusionStatus, ListedRecording, RecordingList, RecordingState};
+use tomcom_study::analysis::recording_summary::{
+    ExclusionStatus, ListedRecording, RecordingKind, RecordingList, RecordingState,
+};
 use tomcom_study::files::recordings;
 use tomcom_study::kept_cost::KeptCost;
 use tomcom_study::{parallel, standing};
@@ -79,6 +81,7 @@ fn read_or_tell(
         date: None,
         trial_s: None,
         errors: None,
+        kind: None,
         state: RecordingState::Unreadable,
         reason: Some(error.with_remedy()),
     };
@@ -90,10 +93,11 @@ fn read_or_tell(
     }
     match read(path, depth, cost) {
         Ok((row, at_console)) => {
-            let glance = glance.filter(|_| at_console.counts());
-            let new = glance.zip(row.arm.zip(row.trial_s).zip(row.errors));
-            let new = new.map(|(glance, ((arm, trial_s), errors))| {
-                (glance.digest, CachedRecordingNumbers { arm, trial_s, errors })
+            let is_whole = at_console.counts() && row.state == RecordingState::Whole;
+            let glance = glance.filter(|_| is_whole);
+            let new = glance.zip(row.arm.zip(row.trial_s).zip(row.errors.zip(row.kind)));
+            let new = new.map(|(glance, ((arm, trial_s), (errors, kind)))| {
+                (glance.digest, CachedRecordingNumbers { arm, trial_s, errors, kind })
             });
             (row, new)
         }
@@ -118,6 +122,7 @@ fn from_figures(
         date: glance.date.clone(),
         trial_s: Some(figures.trial_s),
         errors: (depth == RecordingListDetail::WithErrors).then_some(figures.errors),
+        kind: Some(figures.kind),
         state: if is_excluded { RecordingState::Excluded } else { RecordingState::Whole },
         reason: is_excluded.then(|| standing.describe()),
     })
@@ -148,12 +153,7 @@ fn read(
     }
     let at_console = ExclusionStatus::at_console(&session);
     let standing = standing::with_ruling(at_console.clone(), log.folder())?;
-    let state = match log.ending() {
-        LogEnding::Running => RecordingState::Running,
-        _ if !standing.counts() => RecordingState::Excluded,
-        LogEnding::Cut => RecordingState::Cut,
-        LogEnding::Closed => RecordingState::Whole,
-    };
+    let state = RecordingState::from_session(&session, log.ending(), &standing);
     let row = ListedRecording {
         recording: name(path),
         code: Some(session.spec.participant.code.clone()),
@@ -162,6 +162,7 @@ fn read(
         date: log.header.started.clone(),
         trial_s: Some(session.trial_clock(session.time).as_secs_f64()),
         errors: (depth == RecordingListDetail::WithErrors).then_some(errors),
+        kind: Some(RecordingKind::from_spec(&session.spec)),
         state,
         reason: (state == RecordingState::Excluded).then(|| standing.describe()),
     };
@@ -178,9 +179,9 @@ const REDRAW: Duration = Duration::from_millis(100);
 pub fn pick(folder: &Path) -> Result<Option<PathBuf>, ReviewError> {
     let (list, paths) = list(folder, RecordingListDetail::Quick, |_| (), || ())?;
     // The list has no column of errors here, since counting errors takes long.
-    let without_errors = |cells: [String; 7]| {
-        let [code, condition, date, length, _, state, recording] = cells;
-        vec![code, condition, date, length, state, recording]
+    let without_errors = |cells: [String; 8]| {
+        let [code, kind, condition, date, length, _, state, recording] = cells;
+        vec![code, kind, condition, date, length, state, recording]
     };
     let headings = without_errors(RecordingList::HEADINGS.map(str::to_string));
     let rows = list.recordings.iter().map(|one| without_errors(one.cells())).collect();

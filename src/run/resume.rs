@@ -1,5 +1,5 @@
-//! Continues a recording that was cut off: the session is run again up to the cut, and continues in a new part of the
-//! recording, in a folder beside it.
+//! Continues a recording that was cut off or ended early: the session is run again up to there, and continues in a new
+//! part of the recording, in a folder beside it, which takes the place of the session's end.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -27,8 +27,10 @@ pub enum ResumeError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Recording(#[from] RecordingWriteError),
-    #[error("{}: the session of this recording was brought to its end, so it cannot be continued", .0.display())]
-    #[diagnostic(help("continue a recording that was cut; a new session: tomcom operate"))]
+    #[error("{}: everything in this recording was done, so it cannot be continued", .0.display())]
+    #[diagnostic(help(
+        "continue a recording that was cut or ended early, as tomcom list says; a new session: tomcom operate"
+    ))]
     Ended(PathBuf),
     /// The header of a part names the previous part as text, and this folder's name is no text.
     #[error("{}: the name of this recording's folder is not UTF-8, so a new part cannot name it", .0.display())]
@@ -69,11 +71,11 @@ pub struct ResumedSession {
     pub lock: RecordingLock,
 }
 
-/// Runs the session of a cut recording again up to the cut. A running trial, or a freeze probe in it, is paused at the
-/// cut until the participant is back.
+/// Runs the session of a cut recording, or of one that ended early, again up to there. A running trial, or a freeze
+/// probe in it, is paused until the participant is back.
 ///
 /// # Errors
-/// The recording cannot be read, is being written, was not cut off, or cannot be verified.
+/// The recording cannot be read, is being written, has everything in it, or cannot be verified.
 pub fn resume(recording: &Path) -> Result<ResumedSession, ResumeError> {
     // The path is made absolute, since the new part is created beside the recording and refers to it by name.
     let there = recording.canonicalize();
@@ -87,11 +89,11 @@ pub fn resume(recording: &Path) -> Result<ResumedSession, ResumeError> {
     log.header.session.require_built_live().map_err(|missing| FileError::not_built(&folder, missing))?;
     let lock = RecordingLock::take(&folder)?;
     check_continued(&folder)?;
-    let RepeatedRecording { log, mut again, difference, .. } = RepeatedRecording::from_log(log)?;
+    let RepeatedRecording { log, mut again, difference, .. } = RepeatedRecording::from_log(log.without_end())?;
     if let Some(difference) = difference {
         return Err(ResumeError::Differs { log: difference.log.0, seq: difference.seq });
     }
-    if !log.is_cut() {
+    if !log.is_cut() && again.engine.session().is_step_done() {
         return Err(ResumeError::Ended(folder));
     }
     let time = again.engine.session().time;
@@ -122,6 +124,8 @@ pub(super) struct PreparedSession {
     /// Comparison of wizard and assistants, if the console shows it.
     pub compare: Option<SenderComparisonSettings>,
     pub place: RecordingPlace,
+    /// In a plan: number of participants who have done everything, and of all of them.
+    pub participants_done: Option<(usize, usize)>,
 }
 
 /// In which folder the recording's folder is created.
@@ -144,7 +148,16 @@ impl PreparedSession {
                 header.keys = files.keys;
                 let engine = SessionEngine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen)).without_causes();
                 let (first, time, place) = (Vec::new(), SessionTime::ZERO, RecordingPlace::In(out));
-                Ok(PreparedSession { engine, header, first, consent: None, time, compare: None, place })
+                Ok(PreparedSession {
+                    engine,
+                    header,
+                    first,
+                    consent: None,
+                    time,
+                    compare: None,
+                    place,
+                    participants_done: None,
+                })
             }
             SessionStart::Again { header, kitchen, out } => {
                 let engine =
@@ -158,6 +171,7 @@ impl PreparedSession {
                     time: SessionTime::ZERO,
                     compare: None,
                     place,
+                    participants_done: None,
                 })
             }
             SessionStart::Continued(recording) => {
@@ -172,6 +186,7 @@ impl PreparedSession {
                     time,
                     compare: None,
                     place,
+                    participants_done: None,
                 })
             }
         }
@@ -179,6 +194,10 @@ impl PreparedSession {
 
     pub fn with_consent(self, consent: Option<ProtocolEvent>) -> PreparedSession {
         PreparedSession { consent, ..self }
+    }
+
+    pub fn in_study(self, participants_done: (usize, usize)) -> PreparedSession {
+        PreparedSession { participants_done: Some(participants_done), ..self }
     }
 
     pub fn comparing(self, compare: Option<SenderComparisonSettings>) -> PreparedSession {

@@ -39,6 +39,7 @@ fn is_hidden(event: &Event) -> bool {
             | Event::Advised(_)
             | Event::Unblinded { .. }
             | Event::Marker { .. }
+            | Event::MarkerWorded { .. }
     )
 }
 

@@ -15,6 +15,7 @@ use tomcom_session::files::SessionSetup;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::log::{LogReader, RecordingLock, RecordingWriteError};
 use tomcom_session::plan::{NextRecording, ParticipantProgress, PlanRecording, Study};
+use tomcom_session::settings::ParticipantKind;
 use tomcom_session::wall_display::AnswerDevice;
 use tomcom_session::watcher::SenderComparisonSettings;
 use tomcom_study::files::recordings;
@@ -107,9 +108,15 @@ impl Planned {
         Ok(Planned { series, study })
     }
 
-    fn progress(&self) -> Result<ParticipantProgress, LiveError> {
+    /// Progress of the participant; number of participants who have done everything, and of all.
+    fn progress(&self) -> Result<(ParticipantProgress, (usize, usize)), LiveError> {
         let made = recordings_of(&self.study, &self.series.out)?;
-        ParticipantProgress::from_recordings(&self.study, self.series.participant, &made).map_err(LiveError::Plan)
+        let progress = |participant| ParticipantProgress::from_recordings(&self.study, participant, &made);
+        let all = self.study.plan.codes().len();
+        // Recordings of others that do not fit the plan do not stop this participant.
+        let others = (0..all).filter_map(|participant| progress(participant).ok());
+        let finished = others.filter(|one| one.next == NextRecording::Finished).count();
+        Ok((progress(self.series.participant).map_err(LiveError::Plan)?, (finished, all)))
     }
 
     async fn run(self) -> Result<SeriesOutcome, LiveError> {
@@ -117,23 +124,28 @@ impl Planned {
         // Until the series is over, no other program can begin a recording of the participant.
         let _lock = RecordingLock::take_for_participant(&self.series.out, &self.study.plan.name, &code)?;
         let mut done = Vec::new();
-        let mut progress = self.progress()?;
+        let (mut progress, mut participants) = self.progress()?;
         if progress.next == NextRecording::Finished {
             return Ok(SeriesOutcome { done, remark: Some(stands(&progress)) });
         }
         let mut station = OperatorStation::take(&self.series.files.spec, &self.series.files.kitchen.kitchen).await?;
+        if self.series.files.spec.participant.kind == ParticipantKind::Simulated
+            && ask(&mut station, &rehearsal(&progress)).await? != Some(0)
+        {
+            return Ok(SeriesOutcome { done, remark: Some(stands(&progress)) });
+        }
         while progress.next != NextRecording::Finished {
             let begun = match self.choose(&progress, &mut station).await? {
-                Choice::Begin(begun) => begun,
+                Choice::Begin(begun) => begun.in_study(participants),
                 Choice::Leave(remark) => {
                     let remark = remark.unwrap_or_else(|| stands(&progress));
                     return Ok(SeriesOutcome { done, remark: Some(remark) });
                 }
             };
-            let end = live::run(*begun, &mut station).await?;
+            let end = live::run(begun, &mut station).await?;
             let (leaving, slot) = (end.leaving, progress.next.slot());
             done.push(end);
-            progress = self.progress()?;
+            (progress, participants) = self.progress()?;
             match leaving {
                 LeavingReason::Quit => break,
                 LeavingReason::Next => {}
@@ -173,7 +185,9 @@ impl Planned {
             }
         };
         let begun = PreparedSession::new(beginning)?.comparing(self.series.compare.clone());
-        if progress.consent {
+        // Only people are asked for consent.
+        let is_simulated = self.series.files.spec.participant.kind == ParticipantKind::Simulated;
+        if progress.consent || is_simulated {
             return Ok(Choice::Begin(Box::new(begun)));
         }
         let on_display = self.study.plan.consent_on == AnswerDevice::Display
@@ -189,6 +203,23 @@ impl Planned {
     }
 }
 
+/// The question whether a simulated participant is meant, where people take part.
+fn rehearsal(progress: &ParticipantProgress) -> StartPrompt {
+    let code = &progress.code;
+    StartPrompt {
+        title: format!("{code}: SIMULATED PARTICIPANT"),
+        text: vec![
+            "This is a rehearsal: the session file, or --participant, lets the program play the participant."
+                .to_string(),
+            format!("Its recordings count as those of {code} in this folder; for a rehearsal name another with --out."),
+        ],
+        answers: vec![
+            "rehearse with the simulated participant".to_string(),
+            "leave; with a person: --participant display, or keyboard".to_string(),
+        ],
+    }
+}
+
 /// The question to the wizard whether an unfinished recording is continued or its trial repeated.
 fn which(progress: &ParticipantProgress, recording: &str, slot: usize) -> StartPrompt {
     let name = slot_name(progress, slot);
@@ -197,7 +228,7 @@ fn which(progress: &ParticipantProgress, recording: &str, slot: usize) -> StartP
     StartPrompt {
         title: format!("{}: {name} is not done", progress.code),
         text: vec![format!(
-            "The recording {recording} was cut, or left before everything was done. It has {presses} presses."
+            "The recording {recording} was cut, or ended before everything was done. It has {presses} presses."
         )],
         answers: vec![
             "continue this recording where it ended, with a running trial paused".to_string(),

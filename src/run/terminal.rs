@@ -9,15 +9,17 @@ use crossterm::event::{
     DisableBracketedPaste, DisableFocusChange, DisableMouseCapture, EnableBracketedPaste, EnableFocusChange,
     EnableMouseCapture, KeyboardEnhancementFlags, PopKeyboardEnhancementFlags, PushKeyboardEnhancementFlags,
 };
+use crossterm::style::{Attribute, SetAttribute};
 use crossterm::terminal::{
-    BeginSynchronizedUpdate, EndSynchronizedUpdate, EnterAlternateScreen, LeaveAlternateScreen, disable_raw_mode,
-    enable_raw_mode, size,
+    BeginSynchronizedUpdate, Clear, ClearType, EndSynchronizedUpdate, EnterAlternateScreen, LeaveAlternateScreen,
+    disable_raw_mode, enable_raw_mode, size,
 };
 use crossterm::{cursor, queue};
 use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;
 
 use super::ask::ground;
+use super::event_loop::LoopEvent;
 use super::frames::{FrameWriter, write_within};
 use crate::console::lists::RecordingPicker;
 use crate::console::lists::StartPrompt;
@@ -34,6 +36,8 @@ static TAKEN: Mutex<Option<Arc<FrameWriter>>> = Mutex::new(None);
 static OUT_OF_REACH: AtomicBool = AtomicBool::new(false);
 /// Done when the terminal is first set up for the console; from then on a panic restores the terminal.
 static HOOK: Once = Once::new();
+/// What a terminal rings for.
+const BELL: u8 = 0x07;
 /// Time limit for output to the terminal after a session.
 const LAST_WORDS: Duration = Duration::from_millis(300);
 /// Time limit for the program's end after a termination signal, since a reader of its output may be stuck; closing a
@@ -91,16 +95,44 @@ impl TerminalScreen {
                 }
             }));
         });
-        let frames = FrameWriter::start()?;
-        enable_raw_mode()?;
-        *TAKEN.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = Some(frames.clone());
-        TerminalScreen::set_up(frames).inspect_err(|_| {
+        let frames = TerminalScreen::take_writer()?;
+        let ground = ground().unwrap_or(TerminalBackground::Dark);
+        TerminalScreen::set_up(frames, ground).inspect_err(|_| {
             give_back();
         })
     }
 
-    fn set_up(frames: Arc<FrameWriter>) -> io::Result<TerminalScreen> {
-        let ground = ground().unwrap_or(TerminalBackground::Dark);
+    /// Takes the terminal over, in raw mode.
+    fn take_writer() -> io::Result<Arc<FrameWriter>> {
+        let frames = FrameWriter::start()?;
+        enable_raw_mode()?;
+        *TAKEN.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = Some(frames.clone());
+        Ok(frames)
+    }
+
+    /// Gives the terminal back as it was, and stops the program until the shell continues it.
+    ///
+    /// # Errors
+    /// The program cannot be stopped.
+    pub fn stop_program() -> io::Result<()> {
+        give_back();
+        stop_this_process()
+    }
+
+    /// Sets the terminal up as at first, also if another program changed its modes meanwhile; the next frame is drawn
+    /// whole.
+    ///
+    /// # Errors
+    /// The terminal cannot be controlled.
+    pub fn set_up_again(&mut self) -> io::Result<()> {
+        give_back();
+        let again = TerminalScreen::set_up(TerminalScreen::take_writer()?, self.ground)?;
+        // The old screen must not give back what the new one has taken.
+        std::mem::forget(std::mem::replace(self, again));
+        Ok(())
+    }
+
+    fn set_up(frames: Arc<FrameWriter>, ground: TerminalBackground) -> io::Result<TerminalScreen> {
         frames.show(way_in()?);
         let composed = ComposedFrame::default();
         let terminal = Terminal::new(CrosstermBackend::new(composed.clone()))?;
@@ -131,6 +163,9 @@ impl TerminalScreen {
     /// # Errors
     /// The terminal's size is unknown.
     pub fn draw(&mut self, session: &Session, model: &ConsoleModel) -> io::Result<()> {
+        if self.is_ready() && model.rings {
+            self.composed.write_all(&[BELL])?;
+        }
         self.compose(|frame| view(session, model, frame))
     }
 
@@ -210,7 +245,9 @@ fn way_in() -> io::Result<Vec<u8>> {
         | KeyboardEnhancementFlags::REPORT_ALTERNATE_KEYS
         | KeyboardEnhancementFlags::REPORT_ALL_KEYS_AS_ESCAPE_CODES;
     let mut bytes = Vec::new();
-    queue!(bytes, EnterAlternateScreen, cursor::Hide, EnableFocusChange, PushKeyboardEnhancementFlags(keys))?;
+    // A killed program leaves its screen behind, perhaps in the middle of a frame.
+    queue!(bytes, EndSynchronizedUpdate, SetAttribute(Attribute::Reset), EnterAlternateScreen, Clear(ClearType::All))?;
+    queue!(bytes, cursor::Hide, EnableFocusChange, PushKeyboardEnhancementFlags(keys))?;
     // Pasted text is marked as such, so that its letters are not keys.
     queue!(bytes, EnableMouseCapture, EnableBracketedPaste)?;
     Ok(bytes)
@@ -304,4 +341,58 @@ async fn next_signal() -> io::Result<()> {
 #[cfg(not(unix))]
 async fn next_signal() -> io::Result<()> {
     tokio::signal::ctrl_c().await
+}
+
+/// Signals by which a shell stops the program and continues it.
+#[cfg(unix)]
+pub(super) struct JobControl {
+    stop: tokio::signal::unix::Signal,
+    go_on: tokio::signal::unix::Signal,
+}
+
+#[cfg(unix)]
+impl JobControl {
+    /// # Errors
+    /// Signals cannot be received.
+    pub fn start() -> io::Result<JobControl> {
+        use rustix::process::Signal;
+        use tokio::signal::unix::{SignalKind, signal};
+        let of = |kind: Signal| signal(SignalKind::from_raw(kind.as_raw()));
+        Ok(JobControl { stop: of(Signal::TSTP)?, go_on: of(Signal::CONT)? })
+    }
+
+    /// The next signal.
+    pub async fn next(&mut self) -> LoopEvent {
+        tokio::select! {
+            biased;
+            _ = self.go_on.recv() => LoopEvent::Continued,
+            _ = self.stop.recv() => LoopEvent::Suspend,
+        }
+    }
+}
+
+#[cfg(unix)]
+fn stop_this_process() -> io::Result<()> {
+    use rustix::process::{Signal, getpid, kill_process};
+    Ok(kill_process(getpid(), Signal::STOP)?)
+}
+
+/// This operating system has no job control.
+#[cfg(not(unix))]
+pub(super) struct JobControl;
+
+#[cfg(not(unix))]
+impl JobControl {
+    pub fn start() -> io::Result<JobControl> {
+        Ok(JobControl)
+    }
+
+    pub async fn next(&mut self) -> LoopEvent {
+        std::future::pending().await
+    }
+}
+
+#[cfg(not(unix))]
+fn stop_this_process() -> io::Result<()> {
+    Ok(())
 }

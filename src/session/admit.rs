@@ -45,6 +45,10 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
             let finite = sample.x.is_finite() && sample.y.is_finite() && sample.confidence.is_finite();
             refuse_if(!finite, "the gaze sample is not a number")
         }
+        Event::MarkerWorded { marker, .. } => {
+            let is_open = session.open_marks.iter().any(|(mark, _)| mark == marker);
+            unless(is_open, "no time mark of this number waits for words")
+        }
         Event::Tracker(event) => tracker::admit(event),
         Event::Calibration(event) => gaze_check::admit(session, event),
         Event::RobotMoves(_) | Event::RobotSafety { .. } | Event::RobotTouched { .. } => refuse_if(
@@ -163,6 +167,7 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         | Event::FocusLost
         | Event::FocusRegained
         | Event::Marker { .. }
+        | Event::MarkerWorded { .. }
         | Event::ClockJumped { .. }
         | Event::Advised(_)
         | Event::Tracker(_)

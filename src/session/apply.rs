@@ -5,8 +5,8 @@ use crate::admit::{admit, is_too_early};
 use crate::event::{SignalEndReason, TrialEndReason};
 use crate::gaze_samples::take_sample;
 use crate::{
-    Event, ServedOrder, Session, ShownSignal, TimelineEvent, TimestampedEvent, TrialPhase, gaze_check, offers, probes,
-    protocol,
+    Event, ServedOrder, Session, ShownSignal, TimelineEntry, TimelineEvent, TimestampedEvent, TrialPhase, gaze_check,
+    offers, probes, protocol,
 };
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::offer::{GAP, HOLD, OfferCloseReason, OfferHistory};
@@ -131,7 +131,13 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
             show(session, now, *by, (signal, location), &mut effects);
         }
         Event::SignalEnded { reason } => end_signal(session, now, *reason, &mut effects),
-        Event::Marker { note: text } => session.note(now, TimelineEvent::Marker(text.clone())),
+        Event::Marker { note: text } => {
+            session.note(now, TimelineEvent::Marker(text.clone()));
+            if text.is_empty() {
+                session.open_marks.push((stamped.seq, now));
+            }
+        }
+        Event::MarkerWorded { marker, note } => word_mark(session, *marker, note),
         Event::Probe(event) => effects.extend(probes::apply(session, now, event).map(SessionEffect::Postpone)),
         Event::Protocol(event) => protocol::apply(session, event, now),
         Event::Unblinded { .. } => session.unblinded = true,
@@ -238,6 +244,16 @@ fn start(session: &mut Session, now: SessionTime, effects: &mut Vec<SessionEffec
     KitchenChange::TrialStarted { before, after }
 }
 
+/// Writes the words of a time mark where the mark stands in the timeline.
+fn word_mark(session: &mut Session, marker: u64, note: &str) {
+    let Some(index) = session.open_marks.iter().position(|(mark, _)| *mark == marker) else { return };
+    let (_, at) = session.open_marks.remove(index);
+    let is_it = |entry: &&mut TimelineEntry| entry.time == at && entry.what == TimelineEvent::Marker(String::new());
+    if let Some(entry) = session.timeline.iter_mut().find(is_it) {
+        entry.what = TimelineEvent::Marker(note.to_string());
+    }
+}
+
 fn await_press(session: &Session, now: SessionTime, effects: &mut Vec<SessionEffect>) {
     let time = now + unusual_silence(session);
     effects.push(SessionEffect::At { time, timer: Timer::HumanWaits });
@@ -273,6 +289,7 @@ fn end_trial(session: &mut Session, now: SessionTime, reason: TrialEndReason, ef
 
 fn close(session: &mut Session, now: SessionTime, effects: &mut Vec<SessionEffect>) {
     stop_clock(session, now);
+    session.ended_early = !session.is_step_done();
     session.phase = TrialPhase::Closed;
     probes::session_ends(session, now);
     session.robot.intention = None;

@@ -168,8 +168,14 @@ pub enum Event {
     SignalEnded {
         reason: SignalEndReason,
     },
-    /// A time mark of the wizard.
+    /// A time mark of the wizard; without words if they are to be typed later.
     Marker {
+        note: String,
+    },
+    /// The words of an earlier time mark; empty if it stays without.
+    MarkerWorded {
+        /// Sequence number of the mark.
+        marker: u64,
         note: String,
     },
     Probe(ProbeEvent),

@@ -131,6 +131,16 @@ impl ItemAnswer {
 }
 
 impl StudyProtocolState {
+    /// Whether anything of the plan was done, beyond showing its first sheet.
+    pub(crate) fn is_begun(&self) -> bool {
+        let is_read = self.tutorial.as_ref().is_some_and(|tutorial| tutorial.step > 0 || tutorial.is_over);
+        self.consent
+            || self.number > 1
+            || is_read
+            || self.ticks.contains(&true)
+            || self.answers.iter().any(Option::is_some)
+    }
+
     pub fn given(&self, index: usize) -> Option<&AnswerValue> {
         self.answers.get(index)?.as_ref()?.value()
     }
@@ -206,9 +216,7 @@ impl Session {
                 let is_over = protocol.tutorial.as_ref().is_some_and(|tutorial| tutorial.is_over);
                 (!is_over).then_some("the participant is not through the tutorial")
             }
-            PhaseSpec::Trial | PhaseSpec::Familiarisation => {
-                (!matches!(self.phase, TrialPhase::Over(_))).then_some("the trial is not over")
-            }
+            PhaseSpec::Trial | PhaseSpec::Familiarisation => (!self.is_trial_over()).then_some("the trial is not over"),
             PhaseSpec::Questionnaire { .. } => {
                 (!protocol.confirmed).then_some("the answers to the questionnaire are not confirmed")
             }
@@ -218,7 +226,7 @@ impl Session {
     /// Whether all phases are done or the trial was aborted; true without a plan.
     pub fn is_step_done(&self) -> bool {
         match &self.protocol {
-            None => true,
+            None => self.is_trial_over(),
             Some(_) if self.aborted.is_some() => true,
             Some(protocol) => protocol.number > 0 && self.next_phase().is_none() && self.phase_lacks().is_none(),
         }

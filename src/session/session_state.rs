@@ -6,7 +6,7 @@ use crate::event::{SignalEndReason, TrialEndReason};
 use crate::gaze_check::{AcceptedGazeCheck, RunningGazeCheck};
 use crate::probes::{ProbeEvent, TrialProbes};
 use crate::protocol::StudyProtocolState;
-use crate::settings::{Condition, WizardVisibility};
+use crate::settings::{Condition, GazeSource, WizardVisibility};
 use crate::study_arm::StudyArm;
 use crate::tracker::TrackerStatus;
 use crate::{GazeStatus, SessionSpec};
@@ -77,6 +77,10 @@ pub struct Session {
     pub probes: TrialProbes,
     /// If the recording belongs to a plan.
     pub protocol: Option<StudyProtocolState>,
+    /// Whether it was left before its trial, or its step of the plan, was done.
+    pub ended_early: bool,
+    /// Time marks whose words are not typed yet, oldest first: sequence number and time.
+    pub open_marks: Vec<(u64, SessionTime)>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -144,6 +148,8 @@ impl Session {
             timeline: Vec::new(),
             probes: TrialProbes::default(),
             protocol,
+            ended_early: false,
+            open_marks: Vec::new(),
         }
     }
 
@@ -156,6 +162,12 @@ impl Session {
                 self.paused_at - self.trial_start - self.paused_total
             }
         }
+    }
+
+    /// The trial's clock as it stood at an earlier time.
+    pub fn trial_clock_at(&self, at: SessionTime) -> SessionTime {
+        let paused = self.pauses.iter().map(|&(from, until)| until.min(at) - from.min(at));
+        paused.fold(at - self.trial_start, |clock, pause| clock - pause)
     }
 
     /// Time from `at` to `now` on the trial's clock: without pauses and without the time after the trial's end.
@@ -216,6 +228,21 @@ impl Session {
     /// Of both agents in the trial.
     pub fn all_presses(&self) -> u32 {
         self.presses.iter().sum()
+    }
+
+    /// Whether it has a trial that ran to its end, also after the session's own end.
+    pub fn is_trial_over(&self) -> bool {
+        self.timeline.iter().any(|entry| matches!(entry.what, TimelineEvent::Trial(TrialPhase::Over(_))))
+    }
+
+    /// Whether nothing happened that somebody would miss: no trial was begun, no note written, no eye tracker sent
+    /// anything, no gaze check was accepted and, in a plan, nothing agreed to, ticked or answered.
+    pub fn is_empty(&self) -> bool {
+        let is_kept = |what: &TimelineEvent| matches!(what, TimelineEvent::Trial(_) | TimelineEvent::Marker(_));
+        let is_begun = self.protocol.as_ref().is_some_and(StudyProtocolState::is_begun);
+        let has_tracker = !matches!(self.spec.participant.gaze, GazeSource::Mouse | GazeSource::Simulated);
+        let is_fed = has_tracker && (self.gaze.samples > 0 || self.tracker.dropped.malformed > 0);
+        !is_begun && !is_fed && self.calibrated.is_none() && !self.timeline.iter().any(|entry| is_kept(&entry.what))
     }
 
     /// Started, and neither paused nor over.

@@ -174,6 +174,11 @@ impl SessionSpec {
         self.scripts_wizard() && self.wizard.offers.is_some() && is_shown
     }
 
+    /// Whether the mouse pointer over the console stands for the gaze.
+    pub fn is_gaze_of_console_mouse(&self) -> bool {
+        self.participant.gaze == GazeSource::Mouse && self.participant.kind != ParticipantKind::Display
+    }
+
     /// In a run without a person at the console, a wizard condition without a scripted wizard becomes unassisted.
     pub fn unattended(&self, condition: Condition) -> Condition {
         match condition {
@@ -421,6 +426,21 @@ pub struct ConsoleSpec {
     pub notes: Vec<String>,
     /// Preset reasons for aborting or excluding a trial.
     pub reasons: Vec<String>,
+    /// When the terminal's bell rings.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub bell: Vec<BellOccasion>,
+}
+
+/// An occasion for which the console's bell can be switched on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BellOccasion {
+    /// An offer opens that the wizard sees.
+    Offer,
+    /// In a trial, gaze stops coming.
+    Gaze,
+    /// In a trial, the participant's page is lost.
+    Display,
 }
 
 /// Keys 1 to 5.
@@ -446,6 +466,7 @@ impl Default for ConsoleSpec {
                 "instructions not understood",
                 "interrupted",
             ]),
+            bell: Vec::new(),
         }
     }
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::analysis::recording_summary::ExclusionStatus;
 use tomcom_session::files::file_error::FileResult;
-use tomcom_session::log::{ExclusionRecord, LogEnding, LogReader, ruling};
+use tomcom_session::log::{ExclusionRecord, LogReader, ruling};
 use tomcom_session::{Event, Session, apply};
 
 /// Reason for which the trial of a recording was aborted; `None` if the trial was not aborted.
@@ -31,7 +31,7 @@ pub fn left_out(recording: &Path) -> FileResult<Option<String>> {
     while let Some(line) = log.next_line()? {
         apply(&mut session, &line.stamped).map_err(|error| log.refused(&line, error))?;
     }
-    Ok(exclusion_status(&session, &log)?.left_out(&session, log.ending() == LogEnding::Running))
+    Ok(exclusion_status(&session, &log)?.left_out(&session, log.ending()))
 }
 
 /// A later decision in a file in this folder overrides the status. Errors: that file is damaged.

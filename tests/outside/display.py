@@ -378,7 +378,6 @@ def has_phases(tomcom, browser, folder):
     text = Path("sessions/study.toml").read_text()
     layout, questionnaires = Path("layouts/sushi.toml").resolve(), Path("sessions/questionnaires").resolve()
     text = text.replace("../layouts/sushi.toml", str(layout)).replace('"questionnaires/', f'"{questionnaires}/')
-    text = text.replace('kind = "simulated"', 'kind = "display"').replace('gaze = "simulated"', 'gaze = "none"')
     # tests/outside/tutorial.py plays the tutorial.
     text = "".join(line for line in text.splitlines(True) if not line.startswith("tutorial ="))
     text = text[: text.index("[plan.familiarisation]")] + text[text.index("[[plan.questionnaire]]"):]

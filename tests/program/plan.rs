@@ -104,6 +104,8 @@ fn check_second_console(session: &str, out: &str, code: &str, says: &str) {
 /// The series goes on with the trial that a kill has cut, and comes to its end.
 fn check_goes_on_after_a_kill(terminal: &Terminal, session: &str) {
     operate(terminal, session);
+    terminal.see("A1: SIMULATED PARTICIPANT");
+    terminal.key("1");
     terminal.see("A1: trial 1 is not done");
     terminal.key("1");
     terminal.see("A1 trial 1/2");
@@ -129,14 +131,21 @@ fn check_goes_on_after_a_kill(terminal: &Terminal, session: &str) {
 fn a_participant_goes_through_a_plan_at_the_console_and_over_a_kill() {
     let terminal = Terminal::open("plan");
     let (session, out) = (tiny_plan(&terminal.folder), terminal.recordings());
-    operate(&terminal, &session);
+    // A person is asked for consent.
+    terminal.run(&["operate", &session, "--code", "A1", "--out", &out, "--participant", "keyboard", "--gaze", "none"]);
     terminal.see("and agrees to");
     terminal.key("2");
     terminal.is_whole(0);
     terminal.see("A1 does not agree to be recorded: nothing was recorded");
     assert!(!Path::new(&out).exists(), "nothing is recorded without consent");
+    // A simulated participant has to be meant, and is asked nothing.
     operate(&terminal, &session);
-    terminal.see("and agrees to");
+    terminal.see("A1: SIMULATED PARTICIPANT");
+    terminal.key("2");
+    terminal.is_whole(0);
+    assert!(!Path::new(&out).exists(), "nothing is recorded of a simulated participant that is not meant");
+    operate(&terminal, &session);
+    terminal.see("A1: SIMULATED PARTICIPANT");
     // From here on, no other console records this participant; the other one is free.
     check_second_console(&session, &out, "A1", "records A1 of the plan tiny");
     check_second_console(&session, &out, "B2", "the console cannot be opened");
@@ -146,6 +155,8 @@ fn a_participant_goes_through_a_plan_at_the_console_and_over_a_kill() {
     assert_eq!(plan["next"]["is"], "running", "{plan}");
     check_second_console(&session, &out, "A1", "records A1 of the plan tiny");
     terminal.turn_until("Enter", "the practice", || terminal.screen().contains("READY"));
+    terminal.see("S I M U L A T E D   P A R T I C I P A N T");
+    terminal.see("0 of 2 participants done");
     terminal.begin();
     terminal.see("The practice criterion is not met");
     terminal.key("2");
@@ -162,7 +173,7 @@ fn a_participant_goes_through_a_plan_at_the_console_and_over_a_kill() {
     terminal.is_whole(0);
     terminal.see("A1: everything is done");
     let plan = first(&session, &out);
-    assert_eq!((&plan["consent"], &plan["next"]["is"]), (&Value::Bool(true), &Value::from("finished")), "{plan}");
+    assert_eq!((&plan["consent"], &plan["next"]["is"]), (&Value::Bool(false), &Value::from("finished")), "{plan}");
     let recordings: Vec<PathBuf> =
         fs::read_dir(&out).expect("recordings").flatten().map(|entry| entry.path()).collect();
     recordings.iter().for_each(|recording| drop(verified(recording)));

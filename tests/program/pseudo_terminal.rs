@@ -14,7 +14,7 @@ use rustix::pty::{OpenptFlags, grantpt, ioctl_tiocgptpeer, openpt, unlockpt};
 use rustix::termios::{OptionalActions, Termios, Winsize, tcgetattr, tcsetattr, tcsetwinsize};
 use vt100::{MouseProtocolMode, Parser, Screen};
 
-use crate::program::{PATIENCE, TOMCOM, folder, verified};
+use crate::program::{PATIENCE, TOMCOM, folder, json, verified};
 
 pub const SIZE: (u16, u16) = (120, 40);
 /// What became of a key, in the numbers of kitty's protocol.
@@ -45,9 +45,15 @@ struct Requests {
     focus: bool,
     /// What stays on the screen until a new frame is complete.
     shown: Option<String>,
+    /// How often the bell rang.
+    bells: u64,
 }
 
 impl vt100::Callbacks for Requests {
+    fn audible_bell(&mut self, _: &mut Screen) {
+        self.bells += 1;
+    }
+
     fn unhandled_csi(&mut self, screen: &mut Screen, kind: Option<u8>, _: Option<u8>, numbers: &[&[u16]], last: char) {
         match (kind, last) {
             // The program asks for it, and waits.
@@ -96,6 +102,11 @@ impl Terminal {
         self.display.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
+    /// Another program writes in the terminal.
+    pub fn writes_over(&self, words: &str) {
+        self.display().process(words.as_bytes());
+    }
+
     pub fn screen(&self) -> String {
         let display = self.display();
         display.callbacks().shown.clone().unwrap_or_else(|| display.screen().contents())
@@ -123,6 +134,10 @@ impl Terminal {
 
     pub fn see(&self, text: &str) {
         self.wait(&format!("\"{text}\" on the screen"), || self.screen().contains(text));
+    }
+
+    pub fn bells(&self) -> u64 {
+        self.display().callbacks().bells
     }
 
     /// Waits for these words, wherever lines break.
@@ -269,6 +284,11 @@ impl Terminal {
     /// Waits for the program's end, and checks that the terminal is as it was before.
     pub fn is_whole(&self, exit: i32) {
         assert_eq!(self.end(), Some(exit), "{}", self.screen());
+        self.is_given_back();
+    }
+
+    /// Checks that the terminal is as it was before the program.
+    pub fn is_given_back(&self) {
         let modes = |modes: &Termios| format!("{modes:?}");
         assert_eq!(modes(&tcgetattr(&self.line).expect("modes")), modes(&self.before), "the line discipline");
         self.wait("a whole terminal", || {
@@ -278,6 +298,11 @@ impl Terminal {
             let modes = [screen.alternate_screen(), screen.hide_cursor(), screen.bracketed_paste(), mouse, asked.focus];
             modes == [false; 5] && asked.keys == 0
         });
+    }
+
+    /// What `tomcom list` says of the newest part of the only session.
+    pub fn listed(&self, what: &str) -> serde_json::Value {
+        json(&["list", &self.recordings()])["recordings"][0][what].clone()
     }
 
     pub fn quit(&self) {
@@ -333,7 +358,8 @@ pub fn own_session(command: &mut Command, is_controlled: bool) {
 }
 
 fn display(device: &File) -> Parser<Requests> {
-    let requests = Requests { device: device.try_clone().expect("a file"), keys: 0, focus: false, shown: None };
+    let requests =
+        Requests { device: device.try_clone().expect("a file"), keys: 0, focus: false, shown: None, bells: 0 };
     let (columns, rows) = SIZE;
     Parser::new_with_callbacks(rows.try_into().expect("rows"), columns.try_into().expect("columns"), 0, requests)
 }

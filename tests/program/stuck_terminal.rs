@@ -14,13 +14,13 @@ use crate::pseudo_terminal::{Terminal, own_session};
 /// than two seconds, it is ended by its own limit, with exit code 1.
 const ATTEMPTS: usize = 5;
 
-/// Runs the program until this is on the screen, reads no further, and asks it to end. It must end by itself, and leave the
+/// Runs the program until it is so far, reads no further, and asks it to end. It must end by itself, and leave the
 /// terminal as it should be.
-fn check(terminal: &Terminal, arguments: &[&str], see: &str, ask: impl Fn(&Terminal)) {
+fn check(terminal: &Terminal, arguments: &[&str], is_so_far: impl Fn(&Terminal), ask: impl Fn(&Terminal)) {
     let attempt = |_| {
         let _ = fs::remove_dir_all(terminal.recordings());
         terminal.run(arguments);
-        terminal.see(see);
+        is_so_far(terminal);
         terminal.unread(|| {
             ask(terminal);
             terminal.end() != Some(1)
@@ -44,7 +44,12 @@ fn check_session(name: &str, command: &str, ask: impl Fn(&Terminal)) {
     let terminal = Terminal::open(&format!("stuck-{name}"));
     let out = terminal.recordings();
     let arguments = [command, "sessions/default.toml", "--participant", "keyboard", "--gaze", "none", "--out", &out];
-    check(&terminal, &arguments, "READY", ask);
+    // A note: a session in which nothing happened leaves no recording.
+    let is_so_far = |terminal: &Terminal| {
+        terminal.see("READY");
+        terminal.key_logs("1", "\"kind\":\"marker\"");
+    };
+    check(&terminal, &arguments, is_so_far, ask);
     check_closed(&out);
 }
 
@@ -70,6 +75,7 @@ fn a_session_whose_console_fails_is_closed() {
         last = now;
         unchanged > 5
     });
+    keys.key_logs("1", "\"kind\":\"marker\"");
     drop(screen);
     let output = end("a session", program);
     let told = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -107,8 +113,18 @@ fn a_replay_and_a_training_end_when_nobody_reads_their_terminal() {
     let home = terminal.folder.display().to_string();
     done(&["simulate", "sessions/default.toml", "--seed", "7", "--arm", "timed", "--out", &home]);
     let (recording, out) = (format!("{home}/seed7-S001"), format!("{home}/training"));
-    check(&terminal, &["replay", &recording], "play 1x", |terminal| terminal.signal(Signal::TERM));
-    check(&terminal, &["replay", &recording], "play 1x", |terminal| terminal.key("q"));
+    check(
+        &terminal,
+        &["replay", &recording],
+        |terminal| terminal.see("play 1x"),
+        |terminal| terminal.signal(Signal::TERM),
+    );
+    check(&terminal, &["replay", &recording], |terminal| terminal.see("play 1x"), |terminal| terminal.key("Escape"));
     let training = ["train", &recording, "--wizard", "W7", "--out", &out];
-    check(&terminal, &training, "A hit is the first signal", |terminal| terminal.signal(Signal::TERM));
+    check(
+        &terminal,
+        &training,
+        |terminal| terminal.see("A hit is the first signal"),
+        |terminal| terminal.signal(Signal::TERM),
+    );
 }

@@ -278,6 +278,8 @@ fn a_terminal_that_is_fine_is_found_fine() {
     terminal.is_whole(0);
     terminal.see("120x40");
     terminal.see("can be written to");
+    terminal.see("ready");
+    assert!(!terminal.screen().contains("lsl") && !terminal.screen().contains("mouse"), "the session has neither");
 }
 
 /// The key that goes on in a plan from what is on this screen, if any does.
@@ -286,7 +288,7 @@ fn onward(screen: &str) -> Option<&'static str> {
     let advances = ["READY", "PAUSED", ". next recording", ". next phase: questionnaire"];
     match () {
         () if shows("enter waive for this reason") => Some("Enter"),
-        () if shows("and agrees to") || shows("is not done") || shows("is not met") => Some("1"),
+        () if shows("SIMULATED PARTICIPANT") || shows("is not done") || shows("is not met") => Some("1"),
         () if shows("0 no answer") => Some("3"),
         () if shows("RUNNING") => None,
         () if advances.into_iter().any(shows) => Some("."),

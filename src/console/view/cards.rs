@@ -28,6 +28,8 @@ use tomcom_session::{Session, TimelineEvent, TrialPhase};
 /// Width of a card, and least width of the names in its left column.
 const COLUMNS: u16 = 62;
 const NAMES: u16 = 15;
+/// Columns between two keys.
+const GAP: u16 = 3;
 
 /// A line of a summary card: name, text, and the text's style.
 type Fact = (String, String, TextRole);
@@ -67,6 +69,16 @@ fn place(session: &Session) -> String {
     format!("{}{step}, {}", session.spec.participant.code, head::condition(session))
 }
 
+/// Who plays, in the largest letters that a terminal has.
+fn who_plays(session: &Session) -> String {
+    let who = match session.spec.participant.kind {
+        ParticipantKind::Simulated => "SIMULATED PARTICIPANT",
+        ParticipantKind::Keyboard => "PERSON AT THE KEYBOARD",
+        ParticipantKind::Display => "PERSON AT THE DISPLAY",
+    };
+    who.chars().flat_map(|letter| [letter, ' ']).collect::<String>().trim_end().to_string()
+}
+
 fn before(session: &Session, model: &ConsoleModel) -> Card {
     let trial = &session.spec.trial;
     let length = format!(
@@ -74,11 +86,15 @@ fn before(session: &Session, model: &ConsoleModel) -> Card {
         count(trial.presses, "press", "presses"),
         SessionTime::from_secs_f64(trial.seconds)
     );
-    let mut facts = vec![
-        fact("participant", place(session), TextRole::Strong),
+    let mut facts =
+        vec![fact("", who_plays(session), TextRole::Strong), fact("participant", place(session), TextRole::Strong)];
+    facts.extend(model.participants_done.map(|(done, all)| {
+        fact("study", format!("{done} of {} done", count(all as u64, "participant", "participants")), TextRole::Text)
+    }));
+    facts.extend([
         fact("kitchen", session.kitchen.title.clone(), TextRole::Text),
         fact("trial length", length, TextRole::Text),
-    ];
+    ]);
     for (index, (text, role)) in head::healths(session, model, ScreenSize::Medium).into_iter().enumerate() {
         let name = if index == 0 { "devices" } else { "" };
         facts.push(fact(name, text.trim().to_string(), role));
@@ -134,6 +150,11 @@ fn after(session: &Session, model: &ConsoleModel) -> Card {
         let met = if practice.met { "met" } else { "not met, waived" };
         facts.push(fact("criterion", met.to_string(), TextRole::Strong));
     }
+    if !session.open_marks.is_empty() {
+        let clocks: Vec<String> =
+            session.open_marks.iter().map(|(_, at)| session.trial_clock_at(*at).to_string()).collect();
+        facts.push(fact("time marks", format!("without words at {}", clocks.join(", ")), TextRole::Strong));
+    }
     let mut keys = Vec::new();
     let on = onward(session);
     keys.extend(on.and_then(|on| Some((model.keys.chord_for(&KeyAction::Advance)?, on))));
@@ -145,9 +166,18 @@ fn after(session: &Session, model: &ConsoleModel) -> Card {
                 .map(|key| (key, "repeat the trial".to_string())),
         );
     }
-    keys.extend(model.keys.chord_for(&KeyAction::Quit).map(|key| (key, "close the session".to_string())));
-    let note = KeyAction::Manual(ManualAction::NoteInWords);
-    keys.extend(model.keys.chord_for(&note).map(|key| (key, "type note".to_string())));
+    let exclude = match session.excluded {
+        Some(_) => "include it again",
+        None => "exclude the trial",
+    };
+    let note = if session.open_marks.is_empty() { "type note" } else { "word the time marks" };
+    for (action, words) in [
+        (KeyAction::Quit, "close the session"),
+        (KeyAction::Manual(ManualAction::NoteInWords), note),
+        (KeyAction::Manual(ManualAction::Exclude), exclude),
+    ] {
+        keys.extend(model.keys.chord_for(&action).map(|key| (key, words.to_string())));
+    }
     Card { title: format!("Trial {}", wording::trial(session.phase)), facts, keys }
 }
 
@@ -198,35 +228,55 @@ fn signals(session: &Session, model: &ConsoleModel) -> Vec<Fact> {
     facts
 }
 
+fn key_width(chord: KeyChord, words: &str) -> u16 {
+    width(&chord.to_string()) + 1 + width(words)
+}
+
 impl Card {
     fn draw(&self, brush: &mut Painter, screen: Rect) {
-        let rows = self.facts.len() as u16 + 5;
-        let inside = open(brush, screen, (COLUMNS, rows), &self.title, "");
-        let x = inside.x + 2;
         let names = self.facts.iter().map(|(name, ..)| width(name) + 2).max().unwrap_or(0).max(NAMES);
+        let longest = self.facts.iter().map(|(_, text, _)| width(text)).max().unwrap_or(0);
+        let columns = (names + longest + 6).clamp(COLUMNS, screen.width.max(COLUMNS));
+        let lines = self.key_lines(columns - 4);
+        let rows = (self.facts.len() + lines.len()) as u16 + 4;
+        let inside = open(brush, screen, (columns, rows), &self.title, "");
+        let x = inside.x + 2;
         let quiet = brush.style(TextRole::Quiet);
         let room = inside.width.saturating_sub(names + 3);
         for (row, (name, text, role)) in self.facts.iter().enumerate() {
             let y = inside.y + 1 + row as u16;
-            if y >= inside.bottom() {
-                return;
+            if y + (lines.len() as u16) >= inside.bottom() {
+                break;
             }
             brush.text(x, y, names, name, quiet);
             let style = brush.style(*role);
             brush.text(x + names, y, room, text, style);
         }
-        let y = inside.bottom().saturating_sub(1);
-        let mut at = x;
-        for (chord, words) in &self.keys {
-            let key = chord.to_string();
-            let needed = width(&key) + width(words) + 4;
-            if at + needed > inside.right() + 1 {
-                return;
+        for (line, y) in lines.iter().rev().zip((inside.y..inside.bottom()).rev()) {
+            let mut at = x;
+            for (chord, words) in *line {
+                let key = chord.to_string();
+                let parts =
+                    [(key.as_str(), TextRole::Signal), (" ", TextRole::Text), (words.as_str(), TextRole::Strong)];
+                let end = brush.parts(at, y, key_width(*chord, words), &parts);
+                brush.key_target(at, y, end, *chord);
+                at = end + GAP;
             }
-            let parts = [(key.as_str(), TextRole::Signal), (" ", TextRole::Text), (words.as_str(), TextRole::Strong)];
-            let end = brush.parts(at, y, needed, &parts);
-            brush.key_target(at, y, end, *chord);
-            at = end + 3;
         }
+    }
+
+    /// The keys in as many lines as they need in so many columns.
+    fn key_lines(&self, columns: u16) -> Vec<&[(KeyChord, String)]> {
+        let (mut lines, mut first, mut taken) = (Vec::new(), 0, 0);
+        for (index, (chord, words)) in self.keys.iter().enumerate() {
+            let needed = key_width(*chord, words) + GAP;
+            if taken + needed > columns + GAP && index > first {
+                lines.push(&self.keys[first..index]);
+                (first, taken) = (index, 0);
+            }
+            taken += needed;
+        }
+        lines.push(&self.keys[first..]);
+        lines
     }
 }

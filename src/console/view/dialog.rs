@@ -29,6 +29,10 @@ pub fn draw(brush: &mut Painter, screen: Rect, regions: &PanelAreas, session: &S
         Some(Dialog::Preflight) => preflight(brush, screen, session, model),
         Some(Dialog::Calibration) => super::gaze::draw_accuracy_check(brush, screen, session, model),
         Some(Dialog::Note(line)) => note(brush, screen, session, line),
+        Some(Dialog::Reason(_, reason, line)) => {
+            let says = "enter without words gives the reason alone. No trial runs: the space bar types a space here.";
+            input_line(brush, screen, line, (&format!("{reason}: in words"), ""), says);
+        }
         Some(Dialog::Answer(line)) => answer(brush, screen, session, line),
         Some(Dialog::Help(effects)) => help::draw(brush, screen, model, effects),
         Some(Dialog::Difference(lines)) => difference(brush, screen, lines),
@@ -41,9 +45,10 @@ pub fn draw(brush: &mut Painter, screen: Rect, regions: &PanelAreas, session: &S
             let lines: &[&str] = match session.phase {
                 _ if model.lesson.is_some() => &["The training ends without a saved result."],
                 TrialPhase::Running | TrialPhase::Paused => {
-                    &["The trial is not over: quitting ends it.", "The session ends, the recording is kept."]
+                    &["The trial is not over.", "The recording is kept, and can go on."]
                 }
-                _ if !session.is_step_done() => {
+                _ if session.is_empty() => &["No trial was begun: nothing is kept."],
+                _ if session.protocol.is_some() && !session.is_step_done() => {
                     &["This step of the study is not complete.", "It can be continued or repeated."]
                 }
                 _ => &["The session ends, the recording is kept."],
@@ -179,7 +184,15 @@ pub fn note(brush: &mut Painter, screen: Rect, session: &Session, text: &TextInp
             ("no trial is running: space types a space", says)
         }
     };
-    input_line(brush, screen, text, ("Note to be recorded", remark), says);
+    let (title, marks) = match session.open_marks.as_slice() {
+        [] => ("Note to be recorded".to_string(), String::new()),
+        [(_, at), others @ ..] => {
+            let more = if others.is_empty() { String::new() } else { format!(" {} more marks follow.", others.len()) };
+            let clock = session.trial_clock_at(*at);
+            (format!("The time mark at {clock}: its words"), format!("enter alone leaves it without words.{more} "))
+        }
+    };
+    input_line(brush, screen, text, (&title, remark), &(marks + says));
 }
 
 /// Draws the text input of a questionnaire answer below its item.

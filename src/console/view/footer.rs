@@ -13,6 +13,7 @@ use crate::console::console_model::{ConsoleModel, Dialog, Notice, NoticeLevel, R
 use crate::console::interventions::can_redo;
 use crate::console::key_action::{KeyAction, KeyBinding, KeyLayer, ManualAction, RaterAction, ViewAction};
 use crate::console::mouse::ClickAction;
+use crate::console::panels::is_away;
 use crate::console::possible::is_possible;
 use crate::console::text_columns::width;
 use tomcom_session::history::wording;
@@ -143,6 +144,17 @@ pub fn message(brush: &mut Painter, regions: &PanelAreas, session: &Session, mod
         brush.text(area.x + 1, area.y, area.width - 1, &text, strong);
         return;
     }
+    if let Some(check) = session.calibration.as_ref().filter(|check| check.result.is_none()) {
+        let (at, all) = (check.shown.map_or(0, |(index, _)| index + 1), check.targets.len());
+        let who = match session.spec.participant.kind {
+            ParticipantKind::Simulated => "the simulated participant looks",
+            ParticipantKind::Keyboard | ParticipantKind::Display => "ask the participant to look",
+        };
+        let text = format!(" Gaze check, target {at} of {all}: {who} at the cross; esc ends it ");
+        let strong = brush.style(TextRole::Strong);
+        brush.text(area.x + 1, area.y, area.width - 1, &text, strong);
+        return;
+    }
     if let Some(notice) = model.shown_notice() {
         let style = style_of(brush, notice);
         brush.text(area.x + 1, area.y, area.width - 1, &format!(" {} ", notice.text), style);
@@ -206,6 +218,9 @@ fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -
             _ => Some("start"),
         },
         KeyAction::Move(ReplayAction::PlayPause) => Some(if plays { "pause" } else { "play" }),
+        KeyAction::Manual(ManualAction::NoteInWords) if session.is_running() => Some("mark"),
+        // Where nothing is to be undone, one step back leaves; live, the key that quits says so.
+        KeyAction::Look(ViewAction::All) if !is_away(model) => model.playback.as_ref().map(|_| "leave"),
         KeyAction::Quit if is_over && session.is_step_done() => Some("close the session"),
         KeyAction::Quit if model.coding.as_ref().is_some_and(|coding| coding.is_saved) => Some("quit (saved)"),
         // After the trial the robot rests, and the line of key hints offers only the next step.

@@ -93,6 +93,7 @@ fn too_small(brush: &mut Painter, session: &Session, model: &ConsoleModel) {
             "Gaze accuracy check: o offset subtracted, u without correction, enter accepts, r repeats, esc cancels"
         }
         Some(Dialog::Note(_)) => "Note: enter saves it, esc cancels",
+        Some(Dialog::Reason(..)) => "Words beside the reason: enter gives it, esc goes back",
         Some(Dialog::Answer(_)) => "Answer: enter saves it, esc cancels",
         Some(Dialog::Difference(_)) => "The terminal is too small for the details; any key closes them",
         Some(Dialog::Report(_)) => "The terminal is too small for the training report; enter continues",

@@ -541,7 +541,7 @@ fn part_text(value: &Value) -> Option<String> {
 /// network can read an LSL stream.
 fn private_fields(event: &Event) -> &'static [&'static str] {
     match event {
-        Event::Marker { .. } => &["note"],
+        Event::Marker { .. } | Event::MarkerWorded { .. } => &["note"],
         Event::TrialAborted { .. } | Event::TrialExcluded { .. } => &["reason"],
         Event::Preflight { .. } => &["checks"],
         Event::Tracker(TrackerEvent::Connected { .. }) => &["device"],

@@ -1,5 +1,5 @@
-//! Checks of the participant's page and of the gaze sources for `tomcom doctor`. Gaze sources that the session does not
-//! use are checked at their default addresses; such checks never fail.
+//! Checks of the participant's page, of the gaze source and of the Lab Streaming Layer for `tomcom doctor`, where the
+//! session uses them.
 
 use std::net::{SocketAddr, TcpListener, UdpSocket};
 use std::path::Path;
@@ -18,40 +18,31 @@ use tomcom_session::tracker::TrackerSpec;
 /// Time limit for finding streams of the Lab Streaming Layer and for reading their channels, in seconds.
 const STREAM_S: f64 = 3.0;
 
-pub(super) fn display(spec: &SessionSpec) -> PreflightCheck {
+pub(super) fn display(spec: &SessionSpec) -> Option<PreflightCheck> {
+    if spec.participant.kind != ParticipantKind::Display {
+        return None;
+    }
     let address = SocketAddr::new(spec.display.listen, spec.display.port);
-    let is_used = spec.participant.kind == ParticipantKind::Display;
     let remedy = "end the program that uses the port, or set another address or port under [display]";
-    match TcpListener::bind(address) {
+    Some(match TcpListener::bind(address) {
         Ok(_) => PreflightCheck::ok("wall display", format!("{address} is free for the participant's page")),
         Err(reason) => {
-            missing(is_used, "wall display", format!("{address}: {reason}"), "--participant display", remedy)
+            PreflightCheck::new("wall display", PreflightVerdict::Failed, format!("{address}: {reason}"), remedy)
         }
-    }
+    })
 }
 
 pub(super) fn gaze(spec: &SessionSpec, kitchen: &Kitchen) -> Vec<PreflightCheck> {
     match spec.participant.gaze {
-        GazeSource::Pupil => vec![eye_tracker(&spec.tracker, true)],
+        GazeSource::Pupil => vec![eye_tracker(&spec.tracker)],
         GazeSource::Json => vec![lines(&spec.participant)],
         GazeSource::Lsl => vec![stream(spec)],
         GazeSource::File => file(&spec.tracker, kitchen),
-        GazeSource::Simulated | GazeSource::Mouse | GazeSource::None => vec![eye_tracker(&spec.tracker, false)],
+        GazeSource::Simulated | GazeSource::Mouse | GazeSource::None => Vec::new(),
     }
 }
 
-/// Result for a missing device: a failure if the session uses the device, else a remark that names the option by which
-/// a session would use it.
-fn missing(is_used: bool, name: &str, found: String, flag: &str, remedy: &str) -> PreflightCheck {
-    match is_used {
-        true => PreflightCheck::new(name, PreflightVerdict::Failed, found, remedy),
-        false => {
-            PreflightCheck::new(name, PreflightVerdict::Warning, found, format!("matters for {flag} only: {remedy}"))
-        }
-    }
-}
-
-fn eye_tracker(tracker: &TrackerSpec, is_used: bool) -> PreflightCheck {
+fn eye_tracker(tracker: &TrackerSpec) -> PreflightCheck {
     let (address, port) = (&tracker.address, tracker.port);
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let answer = runtime.and_then(|runtime| runtime.block_on(pupil::version(address, port)));
@@ -59,13 +50,10 @@ fn eye_tracker(tracker: &TrackerSpec, is_used: bool) -> PreflightCheck {
                   [tracker]";
     match answer {
         Ok(version) => PreflightCheck::ok("eye tracker", format!("{version} answers at {address}:{port}")),
-        Err(reason) => missing(
-            is_used,
-            "eye tracker",
-            format!("no eye tracker answers at {address}:{port} ({reason})"),
-            "--gaze pupil",
-            remedy,
-        ),
+        Err(reason) => {
+            let found = format!("no eye tracker answers at {address}:{port} ({reason})");
+            PreflightCheck::new("eye tracker", PreflightVerdict::Failed, found, remedy)
+        }
     }
 }
 
@@ -85,16 +73,17 @@ fn lines(spec: &ParticipantSpec) -> PreflightCheck {
     }
 }
 
-pub(super) fn lsl(spec: &SessionSpec) -> PreflightCheck {
-    match lsl::load(spec.lsl.as_ref()) {
+pub(super) fn lsl(spec: &SessionSpec) -> Option<PreflightCheck> {
+    spec.uses_lsl().then(|| match lsl::load(spec.lsl.as_ref()) {
         Ok(library) => {
             PreflightCheck::ok("lsl", format!("liblsl {:.2} can be loaded", f64::from(library.version) / 100.0))
         }
         Err(error) => {
             // The error text is put on one line, since the operating system's loader writes long texts.
-            missing(spec.uses_lsl(), "lsl", printable(&error.to_string()).into_owned(), "[lsl]", error.remedy())
+            let found = printable(&error.to_string()).into_owned();
+            PreflightCheck::new("lsl", PreflightVerdict::Failed, found, error.remedy())
         }
-    }
+    })
 }
 
 /// Checks whether the Lab Streaming Layer offers the session's gaze stream, and lists the available streams with their

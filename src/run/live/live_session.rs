@@ -72,6 +72,8 @@ pub(super) struct Live {
     /// Last recorded content of the wizard's screen.
     pub(super) seen: Option<WizardScreenContent>,
     pub(super) judged: usize,
+    /// Whether gaze and the participant's page were there when the recording was last watched.
+    pub(super) watched: (bool, bool),
     /// Whether the console's screen has to be redrawn.
     pub(super) dirty: bool,
 }
@@ -126,6 +128,7 @@ impl ConsoleShell for Live {
     fn take(&mut self, event: LoopEvent) -> Result<Option<LeavingReason>, LiveError> {
         match event {
             LoopEvent::Terminal(message) => return Ok(self.take_message(message)),
+            LoopEvent::Suspend => self.pause_for_stop(),
             LoopEvent::EngineDue => self.fire(),
             LoopEvent::TargetDue => self.show_target(),
             LoopEvent::Page(input) => self.take_page_input(input),
@@ -135,7 +138,7 @@ impl ConsoleShell for Live {
             LoopEvent::WatchTick => self.watch(),
             LoopEvent::FileGazeDue => self.take_file_gaze(),
             LoopEvent::Gaze(news) => news.into_iter().for_each(|one| self.take_gaze(one)),
-            LoopEvent::EndRequest | LoopEvent::FrameDue => {}
+            LoopEvent::EndRequest | LoopEvent::Continued | LoopEvent::FrameDue => {}
         }
         Ok(None)
     }
@@ -155,7 +158,7 @@ impl ConsoleShell for Live {
 
 impl Live {
     fn open(begun: PreparedSession, station: &mut OperatorStation) -> Result<Live, LiveError> {
-        let PreparedSession { engine, mut header, first, consent, time, compare, place } = begun;
+        let PreparedSession { engine, mut header, first, consent, time, compare, place, participants_done } = begun;
         let (kitchen, spec) = (engine.session().kitchen.clone(), engine.session().spec.clone());
         let keys = KeyBindings::live(&kitchen, &spec, &key_map(header.keys.as_ref())?)?;
         let keys = if compare.is_some() { keys.with_comparison() } else { keys };
@@ -170,6 +173,7 @@ impl Live {
         let mut model = ConsoleModel::new(keys, theme(&spec.console, station.screen.ground), size);
         model.recording = RecordingStatus::On(log.folder().display().to_string());
         model.comparison = compare.as_ref().map(|_| SenderComparisonView::default());
+        model.participants_done = participants_done;
         let comparison = compare.as_ref().map(|request| {
             let session = Session::new(kitchen.clone(), spec.clone(), header.trial);
             SenderComparisonFollower::new(session, CostToGo::new(kitchen.clone()), request)
@@ -200,6 +204,7 @@ impl Live {
             undrawn: None,
             seen: None,
             judged: 0,
+            watched: (false, false),
             dirty: true,
         };
         live.model.free_bytes = free_bytes(live.log.folder()).ok();
@@ -214,6 +219,15 @@ impl Live {
         live.build_display();
         live.begin_protocol(consent);
         Ok(live)
+    }
+
+    /// Pauses the trial before the program is stopped, since nothing happens and nothing is recorded then.
+    fn pause_for_stop(&mut self) {
+        if self.engine.session().can_be_paused() {
+            self.input(Event::TrialPaused);
+            self.model.say(NoticeLevel::Refused, "the trial is paused, since the program was stopped by a signal");
+        }
+        self.flush_log();
     }
 
     /// Opens the stream to Rerun if the session has one; if opening fails, the session continues without the stream.
@@ -266,13 +280,12 @@ impl Live {
 
     fn close(mut self, leaving: LeavingReason) -> Result<LiveOutcome, LiveError> {
         if self.failed.is_none() {
-            // A planned recording that the wizard leaves early stays unfinished, so that it can be continued.
-            if leaving != LeavingReason::Quit || self.engine.session().is_step_done() {
-                self.input(Event::SessionEnded);
-            } else if self.capture.is_on() && self.engine.session().tracker.is_recording() {
+            let session = self.engine.session();
+            if !session.is_step_done() && self.capture.is_on() && session.tracker.is_recording() {
                 // A trial that is continued later needs a new recording of the tracker's program.
                 self.input(Event::Tracker(TrackerEvent::Recording { state: TrackerRecording::Ended }));
             }
+            self.input(Event::SessionEnded);
             self.flush_log();
             self.check_log(true);
         }
@@ -280,7 +293,11 @@ impl Live {
         if let Some(viewing) = self.viewing.take() {
             viewing.close(&self.log);
         }
+        let is_empty = self.failed.is_none() && self.header.continues.is_none() && self.engine.session().is_empty();
         let folder = self.log.folder().to_path_buf();
+        if is_empty {
+            self.log.discard();
+        }
         match self.failed {
             Some(error) => Err(error.into()),
             None => {
@@ -288,7 +305,14 @@ impl Live {
                 let standing = ExclusionStatus::at_console(self.engine.session());
                 let tutorial = TutorialProgress::from_session(self.engine.session());
                 let figures = TrialSummary::from_follower(&self.engine.into_follower());
-                Ok(LiveOutcome { folder, leaving, figures, tutorial, standing, again })
+                Ok(LiveOutcome {
+                    folder: Some(folder).filter(|_| !is_empty),
+                    leaving,
+                    figures,
+                    tutorial,
+                    standing,
+                    again,
+                })
             }
         }
     }

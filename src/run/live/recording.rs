@@ -10,6 +10,7 @@ use tomcom_session::history::belief_track::{self, BeliefSnapshot};
 use tomcom_session::history::wording;
 use tomcom_session::log::{LogWriter, RecordingWriteError};
 use tomcom_session::probes::ProbeEvent;
+use tomcom_session::settings::BellOccasion;
 use tomcom_session::{Event, TimestampedEvent, TrialPhase};
 
 impl Live {
@@ -20,6 +21,7 @@ impl Live {
             match stamped.event {
                 Event::Gaze(sample) => self.model.see(stamped.time, self.engine.session().corrected(sample)),
                 Event::SignalShown { .. } => self.undrawn = Some(stamped.seq),
+                Event::OfferOpened(ref advice) if advice.visible => self.ring(BellOccasion::Offer),
                 Event::RobotSafety { mode, force_n, joint } if mode.has_stopped_itself() => {
                     self.model.say(NoticeLevel::Alarm, wording::arm_stopped(mode, force_n, joint));
                 }
@@ -62,6 +64,26 @@ impl Live {
         }
     }
 
+    /// Has the terminal ring with the next frame, if the session asks for that.
+    fn ring(&mut self, occasion: BellOccasion) {
+        self.model.rings |= self.engine.session().spec.console.bell.contains(&occasion);
+    }
+
+    /// Rings if gaze or page were there when the recording was last watched, and are lost now in a running trial.
+    fn watch_for_bell(&mut self) {
+        let session = self.engine.session();
+        let gaze = session.gaze_hz(self.clock.now()).is_some();
+        let page = self.model.display.as_ref().is_some_and(|display| display.page.is_some());
+        let (was_gaze, was_page) = std::mem::replace(&mut self.watched, (gaze, page));
+        let runs = session.is_running();
+        for (is_lost, occasion) in [(was_gaze && !gaze, BellOccasion::Gaze), (was_page && !page, BellOccasion::Display)]
+        {
+            if is_lost && runs {
+                self.ring(occasion);
+            }
+        }
+    }
+
     /// Flushes the log and the stream to Rerun, and moves the robot's hand on the participant's display.
     pub(super) fn flush(&mut self) {
         self.move_robot();
@@ -99,6 +121,7 @@ impl Live {
     pub(super) fn watch(&mut self) {
         self.examine_display();
         self.pause_without_page();
+        self.watch_for_bell();
         if let Some(by_ms) = self.clock.jump() {
             self.input(Event::ClockJumped { by_ms });
             let text = format!("the computer's clock jumped by {:.1} s: session time did not", by_ms as f64 / 1000.0);

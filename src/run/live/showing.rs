@@ -42,6 +42,7 @@ impl Live {
 
     /// Records that the frame just drawn is the first one that shows a signal to the wizard.
     pub(super) fn tell_drawn(&mut self) {
+        self.model.rings = false;
         if let Some(signal) = self.undrawn.take_if(|_| self.engine.session().phase != TrialPhase::Closed) {
             self.input(Event::SignalDrawn { signal });
         }

@@ -217,6 +217,7 @@ pub fn happening(kitchen: &Kitchen, what: &TimelineEvent) -> (&'static str, Stri
         }
         TimelineEvent::Served { order } => ("", format!("{} is served", kitchen.location(*order).label())),
         TimelineEvent::OrderShown { order } => ("", format!("{} appears", kitchen.location(*order).label())),
+        TimelineEvent::Marker(note) if note.is_empty() => ("note", "time mark".to_string()),
         TimelineEvent::Marker(note) => ("note", note.clone()),
         TimelineEvent::RobotStopped => ("wizard", "stopped the robot".to_string()),
         TimelineEvent::ArmStopped { mode, force_n, joint } => ("robot", arm_stopped(*mode, *force_n, *joint)),

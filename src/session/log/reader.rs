@@ -93,6 +93,8 @@ pub struct LogReader {
     /// a copy can add them.
     blank: Option<usize>,
     ended: bool,
+    /// Whether the session's end is left out.
+    without_end: bool,
 }
 
 impl LogReader {
@@ -140,7 +142,13 @@ impl LogReader {
             partial,
             blank,
             ended: false,
+            without_end: false,
         })
+    }
+
+    /// Leaves the session's end out, as for a part that takes its place.
+    pub fn without_end(self) -> LogReader {
+        LogReader { without_end: true, ..self }
     }
 
     /// Before its first event.
@@ -182,12 +190,13 @@ impl LogReader {
                     self.number = number;
                     return Err(self.wrong("", 0, "an empty line before another event"));
                 }
-                None => return self.event_of(bytes).map(Some),
+                None => return self.event_of(bytes),
             }
         }
     }
 
-    fn event_of(&mut self, bytes: Vec<u8>) -> FileResult<LogLine> {
+    /// The event of a line; `None` for an end of the session that is left out.
+    fn event_of(&mut self, bytes: Vec<u8>) -> FileResult<Option<LogLine>> {
         let text = String::from_utf8(bytes).map_err(|error| {
             let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
             self.wrong(&text, error.utf8_error().valid_up_to(), "bytes that are no text (UTF-8)")
@@ -201,9 +210,12 @@ impl LogReader {
                 &format!("an event with seq {}, where seq {} comes next", stamped.seq, self.next_seq),
             ));
         }
-        self.next_seq += 1;
         self.ended = stamped.event == Event::SessionEnded;
-        Ok(LogLine { number: self.number, text, stamped })
+        if self.ended && self.without_end {
+            return Ok(None);
+        }
+        self.next_seq += 1;
+        Ok(Some(LogLine { number: self.number, text, stamped }))
     }
 
     /// The last complete event of this part, wherever the reader is; `None` if none can be read. An invalid line is

@@ -11,7 +11,7 @@ use crate::files::file_error::read_regular;
 use crate::files::replace_file::{self, new_beside, replaced_name};
 use crate::files::rescue::{RescueNote, new_rescue_folder};
 use crate::log::lock::{LOCK_NAME, RecordingLock, is_same};
-use crate::log::{LOG_NAME, RecordingWriteError, SETTINGS_NAME, move_aside};
+use crate::log::{LOG_NAME, RRD_NAME, RecordingWriteError, SETTINGS_NAME, move_aside};
 use crate::{LogHeader, SessionSpec, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;
 
@@ -86,6 +86,16 @@ impl LogWriter {
 
     pub fn folder(&self) -> &Path {
         &self.folder
+    }
+
+    /// Removes a recording in which nothing happened. Its folder stays if others put something into it.
+    pub fn discard(&self) {
+        let seal = format!("{RRD_NAME}.toml");
+        // What cannot be removed stays, and is listed as empty.
+        for name in [LOG_NAME, SETTINGS_NAME, RRD_NAME, &seal, LOCK_NAME] {
+            let _ = fs::remove_file(self.folder.join(name));
+        }
+        let _ = fs::remove_dir(&self.folder);
     }
 
     pub fn announce(&mut self, viewers: &str) {

@@ -7,7 +7,7 @@ use crate::SessionSpec;
 use crate::plan::{PhaseSpec, PlanPosition, PlanSpec, PracticeCriterion, StartingGroup};
 use crate::protocol::ProtocolEvent;
 use crate::questionnaire::Questionnaire;
-use crate::settings::{ConsoleSpec, ParticipantKind, ParticipantSpec, WizardVisibility};
+use crate::settings::{ConsoleSpec, GazeSource, ParticipantKind, ParticipantSpec, WizardVisibility};
 use crate::stream_settings::RerunSpec;
 use crate::study_arm::StudyArm;
 use crate::tracker::TrackerSpec;
@@ -117,12 +117,15 @@ impl Study {
         (spec, trial_number(wanted))
     }
 
-    /// Of a simulated trial, and its number. It has no instruction and no questionnaire; without a scripted wizard, the
-    /// wizard conditions are unassisted.
+    /// Of a simulated trial, and its number. In a plan for people, simulated ones with simulated gaze take their part. The
+    /// trial has no instruction and no questionnaire; without a scripted wizard, the wizard conditions are unassisted.
     pub fn simulated(&self, participant: usize, period: u32) -> (SessionSpec, u64) {
         let slots = self.slots(participant);
         let slot = slots.iter().position(|slot| slot.period == Some(period)).unwrap_or(0);
         let (mut spec, trial) = self.settings(WantedRecording { participant, slot, attempt: 1, instructed: true });
+        if spec.participant.kind != ParticipantKind::Simulated {
+            (spec.participant.kind, spec.participant.gaze) = (ParticipantKind::Simulated, GazeSource::Simulated);
+        }
         spec.trial.condition = spec.unattended(spec.trial.condition);
         let saw_advice = spec.script_reads_offers();
         let arm = StudyArm::from_settings(spec.trial.condition, spec.assistant.concept, saw_advice);

@@ -1,15 +1,16 @@
 //! Summary of one recording (presses, errors, beliefs, signals, gaze), and the list of the recordings in a folder.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::analysis::trial_summary::{FalseBeliefErrorSummary, TrialSummary};
 use tomcom_core::base::text::count;
 use tomcom_core::gaze::quality::{DroppedInputCounts, GazeFaultCounts};
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::gaze_samples::faults;
-use tomcom_session::settings::Condition;
+use tomcom_session::log::LogEnding;
+use tomcom_session::settings::{Condition, ParticipantKind};
 use tomcom_session::study_arm::StudyArm;
-use tomcom_session::{Session, TrialPhase};
+use tomcom_session::{Session, SessionSpec};
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RecordingSummary {
@@ -82,13 +83,21 @@ impl RecordingSummary {
     }
 }
 
+/// What became of a recording. The list, `--continue` and the study judge by the same facts: whether its session was
+/// closed, and whether its trial and, in a plan, its step was done then.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum RecordingState {
+    /// Everything was done, and the session closed.
     Whole,
-    /// Cut recording: it lacks its end event, and no session is writing to it.
+    /// The session was closed, by the wizard or by a signal to the program, before everything was done.
+    #[strum(serialize = "ended early")]
+    EndedEarly,
+    /// The session's end is missing, and no program is writing: the program or its computer failed.
     Cut,
+    /// Nothing happened in it. A session that is left like this removes its recording; a killed one leaves it.
+    Empty,
     Excluded,
     /// Running recording: the session is still writing to it.
     Running,
@@ -96,8 +105,51 @@ pub enum RecordingState {
 }
 
 impl RecordingState {
+    /// The state of a recording that was read to its end.
+    pub fn from_session(session: &Session, ending: LogEnding, standing: &ExclusionStatus) -> RecordingState {
+        match ending {
+            LogEnding::Running => RecordingState::Running,
+            _ if !standing.counts() => RecordingState::Excluded,
+            _ if session.is_empty() => RecordingState::Empty,
+            LogEnding::Cut => RecordingState::Cut,
+            LogEnding::Closed if session.ended_early => RecordingState::EndedEarly,
+            LogEnding::Closed => RecordingState::Whole,
+        }
+    }
+
     pub fn name(self) -> &'static str {
         self.into()
+    }
+}
+
+/// Whether a recording is of a person, and of a trial that the study counts or of practice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RecordingKind {
+    Trial,
+    Practice,
+    SimulatedTrial,
+    SimulatedPractice,
+}
+
+impl RecordingKind {
+    pub fn from_spec(spec: &SessionSpec) -> RecordingKind {
+        let is_practice = spec.step.as_ref().is_some_and(|step| step.period.is_none());
+        match (spec.participant.kind == ParticipantKind::Simulated, is_practice) {
+            (false, false) => RecordingKind::Trial,
+            (false, true) => RecordingKind::Practice,
+            (true, false) => RecordingKind::SimulatedTrial,
+            (true, true) => RecordingKind::SimulatedPractice,
+        }
+    }
+
+    pub fn name(self) -> &'static str {
+        match self {
+            RecordingKind::Trial => "trial",
+            RecordingKind::Practice => "practice",
+            RecordingKind::SimulatedTrial => "simulated",
+            RecordingKind::SimulatedPractice => "simulated practice",
+        }
     }
 }
 
@@ -113,6 +165,7 @@ pub struct ListedRecording {
     pub trial_s: Option<f64>,
     /// Number of the human's presses that were errors; null where errors are not counted.
     pub errors: Option<u64>,
+    pub kind: Option<RecordingKind>,
     pub state: RecordingState,
     pub reason: Option<String>,
 }
@@ -125,7 +178,8 @@ pub struct RecordingList {
 
 impl RecordingList {
     /// Column headings of the list, in the order of [`ListedRecording::cells`].
-    pub const HEADINGS: [&'static str; 7] = ["code", "condition", "date", "length", "errors", "state", "recording"];
+    pub const HEADINGS: [&'static str; 8] =
+        ["code", "kind", "condition", "date", "length", "errors", "state", "recording"];
 
     pub fn new(folder: String, mut recordings: Vec<ListedRecording>) -> RecordingList {
         let key = |one: &ListedRecording| (one.code.clone(), one.date.clone(), one.recording.clone());
@@ -134,9 +188,9 @@ impl RecordingList {
     }
 
     pub fn describe(&self) -> String {
-        let mut rows: Vec<[String; 7]> = vec![RecordingList::HEADINGS.map(str::to_string)];
+        let mut rows: Vec<[String; 8]> = vec![RecordingList::HEADINGS.map(str::to_string)];
         rows.extend(self.recordings.iter().map(ListedRecording::cells));
-        let widths: Vec<usize> = (0..7).map(|column| widest(&rows, column)).collect();
+        let widths: Vec<usize> = (0..8).map(|column| widest(&rows, column)).collect();
         let mut text = String::new();
         for (row, one) in rows.iter().zip(std::iter::once(None).chain(self.recordings.iter().map(Some))) {
             let cells = row.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}"));
@@ -148,16 +202,17 @@ impl RecordingList {
     }
 }
 
-fn widest(rows: &[[String; 7]], column: usize) -> usize {
+fn widest(rows: &[[String; 8]], column: usize) -> usize {
     rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0)
 }
 
 impl ListedRecording {
-    pub fn cells(&self) -> [String; 7] {
+    pub fn cells(&self) -> [String; 8] {
         let or_dash = |cell: Option<String>| cell.unwrap_or_else(|| "-".to_string());
         let minutes = |seconds: f64| format!("{}:{:02}", seconds as u64 / 60, seconds as u64 % 60);
         [
             or_dash(self.code.clone()),
+            or_dash(self.kind.map(|kind| kind.name().to_string())),
             or_dash(self.arm.map(|arm| arm.title().to_string())),
             or_dash(self.date.as_deref().map(|date| date.chars().take(16).collect::<String>().replace('T', " "))),
             or_dash(self.trial_s.map(minutes)),
@@ -229,16 +284,21 @@ impl ExclusionStatus {
         self.aborted.is_none() && self.excluded.is_none()
     }
 
-    /// Why analyses leave out a trial that was read to its end, in words. `is_running`: it is still recorded.
-    pub fn left_out(self, session: &Session, is_running: bool) -> Option<String> {
-        let is_over = matches!(session.phase, TrialPhase::Over(_) | TrialPhase::Closed);
+    /// Why analyses leave out the trial of a session that was read as far as it is recorded, in words; `None` for a trial
+    /// that counts: one that is over, also if its recording was cut or left after that.
+    pub fn left_out(self, session: &Session, ending: LogEnding) -> Option<String> {
+        let state = RecordingState::from_session(session, ending, &self);
         match self {
-            ExclusionStatus { aborted: Some(reason), .. } => Some(format!("aborted: {reason}")),
-            ExclusionStatus { excluded: Some(reason), .. } => Some(format!("excluded: {reason}")),
-            _ if !is_over && is_running => Some("running: its trial is not over".to_string()),
-            _ if !is_over => Some("cut before the trial's end".to_string()),
-            _ if session.presses == [0, 0] => Some("no press in it".to_string()),
-            _ => None,
+            ExclusionStatus { aborted: Some(reason), .. } => return Some(format!("aborted: {reason}")),
+            ExclusionStatus { excluded: Some(reason), .. } => return Some(format!("excluded: {reason}")),
+            _ => {}
+        }
+        match state {
+            RecordingState::Empty => Some("empty: no trial in it".to_string()),
+            _ if session.is_trial_over() => (session.presses == [0, 0]).then(|| "no press in it".to_string()),
+            RecordingState::Running => Some("running: its trial is not over".to_string()),
+            RecordingState::Cut => Some("cut before the trial's end".to_string()),
+            _ => Some("ended early, before the trial's end".to_string()),
         }
     }
 

@@ -12,7 +12,7 @@ use tomcom_session::header::{FORMAT, PreviousPart};
 use tomcom_session::log::{
     LOG_NAME, MAX_LINE, RecordingLock, SameLogs, first_line, header_digest, read_header, ruling,
 };
-use tomcom_session::plan::{PlanPosition, PlanRecording, RecordingOutcome};
+use tomcom_session::plan::{PhaseSpec, PlanPosition, PlanRecording, RecordingOutcome};
 use tomcom_session::protocol::{ProtocolEvent, StudyPhase};
 use tomcom_session::{Event, TimestampedEvent};
 
@@ -126,6 +126,10 @@ struct PartProgress {
     consent: bool,
     instructed: bool,
     phase: usize,
+    /// Steps of the last phase that were ticked or, in a later part, unticked.
+    ticks: BTreeMap<usize, bool>,
+    /// Whether the answers of the last phase were confirmed.
+    confirmed: bool,
     presses: u32,
     trial_over: bool,
     criterion_failed: bool,
@@ -147,9 +151,12 @@ impl PartProgress {
             Event::SessionEnded => self.ended = true,
             Event::Protocol(ProtocolEvent::ConsentGiven { .. }) => self.consent = true,
             Event::Protocol(ProtocolEvent::PhaseStarted { phase, number }) => {
-                self.phase = *number;
+                (self.phase, self.confirmed) = (*number, false);
+                self.ticks.clear();
                 self.instructed |= !matches!(phase, StudyPhase::Instruction | StudyPhase::Tutorial);
             }
+            Event::Protocol(ProtocolEvent::Ticked { step, done }) => drop(self.ticks.insert(*step, *done)),
+            Event::Protocol(ProtocolEvent::AnswersConfirmed) => self.confirmed = true,
             Event::Protocol(ProtocolEvent::CriterionChecked { met, .. }) => self.criterion_failed = !met,
             Event::Protocol(ProtocolEvent::CriterionWaived { .. }) => self.criterion_waived = true,
             _ => {}
@@ -214,7 +221,6 @@ impl Part {
             all.push(before);
         }
         let any = |is: fn(&PartProgress) -> bool| all.iter().any(|part| is(&part.told));
-        let phase = all.iter().map(|part| part.told.phase).max().unwrap_or(0);
         // The last part of the recording that contains a decision about exclusion counts.
         let excluded = all.iter().find_map(|part| part.told.excluded.clone()).flatten();
         let aborted = all.iter().find_map(|part| part.told.aborted.as_ref());
@@ -227,8 +233,8 @@ impl Part {
             void(&format!("aborted ({reason})"))
         } else if any(|part| part.criterion_failed) && !any(|part| part.criterion_waived) {
             void("criterion not met")
-        } else if phase < self.step.phases.len() || !any(|part| part.trial_over) {
-            void("closed before every step of the plan was done")
+        } else if !any(|part| part.trial_over) || !self.is_last_phase_done(&all) {
+            RecordingOutcome::Open
         } else {
             excluded.map_or(RecordingOutcome::Complete, |reason| RecordingOutcome::Excluded { reason })
         };
@@ -241,6 +247,24 @@ impl Part {
             instructed: any(|part| part.instructed),
             presses: all.iter().map(|part| part.told.presses).sum(),
             outcome,
+        }
+    }
+}
+
+impl Part {
+    /// Whether the last phase of the plan's step is done, after these parts, the last one first.
+    fn is_last_phase_done(&self, parts: &[&Part]) -> bool {
+        let since = parts.iter().position(|part| part.told.phase == self.step.phases.len());
+        let since = since.map_or(&[][..], |first| &parts[..=first]);
+        let mut ticks: BTreeMap<usize, bool> = BTreeMap::new();
+        since.iter().rev().for_each(|part| ticks.extend(&part.told.ticks));
+        match self.step.phases.last() {
+            _ if since.is_empty() => false,
+            Some(PhaseSpec::Instruction { steps } | PhaseSpec::Debriefing { steps }) => {
+                ticks.values().filter(|done| **done).count() == steps.len()
+            }
+            Some(PhaseSpec::Questionnaire { .. }) => since.iter().any(|part| part.told.confirmed),
+            _ => true,
         }
     }
 }

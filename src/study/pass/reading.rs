@@ -38,7 +38,7 @@ use tomcom_session::apply::ApplyError;
 use tomcom_session::files::file_error::FileResult;
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::history::comparison::CommunicationContent;
-use tomcom_session::log::{LogEnding, LogReader, rater_codes};
+use tomcom_session::log::{LogReader, rater_codes};
 use tomcom_session::plan::{AnswerFormat, Questionnaire, QuestionnaireItem, QuestionnaireItemKind, ScoreRule};
 use tomcom_session::protocol::{ProtocolEvent, StudyProtocolState};
 use tomcom_session::settings::{Condition, ParticipantKind};
@@ -187,7 +187,7 @@ pub fn read(
     let follower = pass.follower();
     let by_estimate = by_estimate.map(|found| found.causes);
     let (judged, basis) = coded.judged(follower, by_estimate.as_deref());
-    let left_out = standing.left_out(&follower.session, log.ending() == LogEnding::Running);
+    let left_out = standing.left_out(&follower.session, log.ending());
     let mut trial = trial(name, &header, follower, left_out);
     trial.ended = robot.ended;
     trial.display_losses = trial.display_arm.map(|_| display.finish(&follower.session));

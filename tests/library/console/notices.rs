@@ -93,8 +93,6 @@ fn the_notes_are_those_of_the_session() {
 #[test]
 fn notes_in_words_are_written_while_no_trial_runs_and_only_there_the_space_bar_types() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    assert_eq!(stage.key(KeyCode::Char('0')), None);
-    assert!(stage.notice().contains("only while no trial runs"), "{}", stage.notice());
     stage.at(23.0, Event::TrialPaused);
     stage.wait(1.0);
     stage.key(KeyCode::Char('0'));
@@ -118,6 +116,47 @@ fn notes_in_words_are_written_while_no_trial_runs_and_only_there_the_space_bar_t
     stage.key(KeyCode::Char('0'));
     assert_eq!(stage.key(KeyCode::Esc), None);
     assert_eq!(stage.model.dialog, None);
+}
+
+#[test]
+fn a_time_mark_is_set_at_once_and_gets_its_words_when_the_trial_stands() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    for seconds in [23.0, 24.0] {
+        let mark = input(stage.key(KeyCode::Char('0'))).expect("a mark");
+        assert_eq!(mark, Event::Marker { note: String::new() });
+        assert_eq!(stage.model.dialog, None, "the space bar goes on to stop the robot");
+        stage.at(seconds, mark);
+        stage.wait(1.0);
+    }
+    let marks: Vec<u64> = stage.session.open_marks.iter().map(|(mark, _)| *mark).collect();
+    stage.at(26.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
+    stage.wait(1.0);
+    stage.shows((120, 40), &["time marks", "without words at 0:23, 0:24", "0 word the time marks"]);
+    stage.key(KeyCode::Char('0'));
+    stage.shows((80, 24), &["The time mark at 0:23: its words", "1 more marks follow"]);
+    type_in(&mut stage, "looked away");
+    let worded = Event::MarkerWorded { marker: marks[0], note: "looked away".to_string() };
+    assert_eq!(input(stage.key(KeyCode::Enter)), Some(worded.clone()));
+    stage.at(28.0, worded);
+    stage.shows((80, 24), &["The time mark at 0:24: its words"]);
+    // A mark may stay without words.
+    let without = Event::MarkerWorded { marker: marks[1], note: String::new() };
+    stage.wait(1.0);
+    assert_eq!(input(stage.key(KeyCode::Enter)), Some(without.clone()));
+    stage.at(30.0, without);
+    let noted: Vec<(f64, &str)> = stage
+        .session
+        .timeline
+        .iter()
+        .filter_map(|entry| match &entry.what {
+            TimelineEvent::Marker(note) if entry.time.as_secs_f64() > 22.0 => {
+                Some((entry.time.as_secs_f64(), note.as_str()))
+            }
+            _ => None,
+        })
+        .collect();
+    assert_eq!(noted, [(23.0, "looked away"), (24.0, "")]);
+    assert!(stage.session.open_marks.is_empty() && stage.model.dialog.is_none());
 }
 
 #[test]

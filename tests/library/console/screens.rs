@@ -135,7 +135,7 @@ fn help_and_the_question_before_leaving() {
     stage.key(KeyCode::Down);
     assert_eq!(stage.model.dialog, None, "all of it is seen: every key closes");
     stage.control('c');
-    let question = ["Quit tomcom?", "The trial is not over: quitting ends it.", "y or ^c yes   any other key no"];
+    let question = ["Quit tomcom?", "The trial is not over.", "and can go on.", "y or ^c yes   any other key no"];
     stage.shows((80, 24), &question);
 }
 
@@ -288,7 +288,7 @@ fn the_keys_of_a_replay_and_the_served_orders_fit_the_smallest_console() {
     let mut playback = Playback::new("2026-03-14-P01-1".to_string());
     (playback.playing, playback.event, playback.events) = (true, 43210, 59289);
     stage.model.playback = Some(playback);
-    stage.shows_everywhere(&["q quit", "? help", "left/right step", "0 served", "play 1x", " recording "]);
+    stage.shows_everywhere(&["esc leave", "? help", "left/right step", "0 served", "play 1x", " recording "]);
 }
 
 #[test]
@@ -301,7 +301,7 @@ fn each_panel_can_be_looked_at_alone() {
         stage.wait(0.2);
         assert_eq!(stage.control('w'), None);
         let screen = stage.screen((80, 24));
-        assert!(screen.contains("STOP ROBOT") && screen.contains("esc all panels"), "{screen}");
+        assert!(screen.contains("STOP ROBOT") && screen.contains("esc back"), "{screen}");
         seen.extend(panels(&stage));
     }
     // The offer's line is always seen.

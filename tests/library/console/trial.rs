@@ -48,13 +48,21 @@ fn a_trial_is_aborted_with_a_reason_and_done_again() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     assert_eq!(stage.control('n'), None);
     assert!(stage.notice().contains("abort the trial before you repeat it"), "{}", stage.notice());
-    assert_eq!(stage.control('x'), None);
+    assert_eq!(input(stage.control('x')), Some(Event::TrialPaused), "the trial stands while the reason is chosen");
+    stage.at(23.0, Event::TrialPaused);
     let reasons = ["Abort the trial: why?", "5 of 5", "» participant stopped", "technical failure", "interrupted"];
     stage.shows((80, 24), &reasons);
     stage.key(KeyCode::Down);
-    let aborted = Event::TrialAborted { reason: "technical failure".to_string() };
+    assert_eq!(stage.key(KeyCode::Enter), None);
+    stage.shows((80, 24), &["technical failure: in words"]);
+    for letter in "no power".chars() {
+        stage.wait(0.2);
+        assert_eq!(stage.key(KeyCode::Char(letter)), None, "the space bar types a space");
+    }
+    let aborted = Event::TrialAborted { reason: "technical failure: no power".to_string() };
+    stage.wait(1.0);
     assert_eq!(input(stage.key(KeyCode::Enter)), Some(aborted.clone()));
-    stage.at(30.0, aborted);
+    stage.at(40.0, aborted);
     for size in SIZES {
         let screen = stage.screen(size);
         assert!(screen.contains("ABORTED") && screen.contains("^n repeat the trial"), "{screen}");
@@ -74,6 +82,22 @@ fn a_trial_is_excluded_and_included_by_one_key() {
     stage.shows((120, 40), &["EXCLUDED"]);
     stage.wait(1.0);
     assert_eq!(input(stage.control('l')), Some(Event::TrialIncluded));
+    stage.at(30.0, Event::TrialIncluded);
+    stage.at(31.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
+    stage.wait(1.0);
+    stage.shows((120, 40), &["^l exclude the trial"]);
+    stage.control('l');
+    stage.wait(1.0);
+    stage.key(KeyCode::Enter);
+    let words = "the participant had to leave after a telephone call from the kindergarten";
+    stage.paste(Some(words));
+    let reason = format!("participant stopped: {words}");
+    let excluded = Event::TrialExcluded { reason: reason.clone() };
+    stage.wait(1.0);
+    assert_eq!(input(stage.key(KeyCode::Enter)), Some(excluded.clone()));
+    stage.at(40.0, excluded);
+    // The card is as wide as its longest line, and says which key takes it back.
+    stage.shows((120, 40), &[reason.as_str(), "^l include it again"]);
 }
 
 #[test]

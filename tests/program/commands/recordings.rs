@@ -127,7 +127,7 @@ fn a_folder_is_listed_and_is_no_recording_where_one_is_meant() {
     let column = |name: &str| rows.iter().map(|row| row[name].clone()).collect::<Vec<_>>();
     assert_eq!(column("code"), [Value::Null, "S001".into(), "S002".into(), "S003".into()]);
     assert_eq!(column("state"), ["unreadable", "whole", "cut", "excluded"]);
-    assert_eq!(rows[3]["reason"], "excluded: interrupted");
+    assert_eq!((&rows[3]["reason"], &rows[1]["kind"]), (&"excluded: interrupted".into(), &"simulated_trial".into()));
     let whole = figures(&["replay", &format!("{out}/seed7-S001"), "--format", "json"], 0);
     assert_eq!((&rows[1]["errors"], &rows[1]["trial_s"]), (&whole["errors"], &whole["trial_s"]));
     assert_eq!((&rows[1]["condition"], &rows[1]["arm"]), (&"none".into(), &"none".into()));

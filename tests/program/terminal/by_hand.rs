@@ -107,6 +107,32 @@ fn an_order_is_made_and_served_by_hand_in_the_burger_kitchen() {
 }
 
 #[test]
+fn the_bell_rings_where_gaze_is_lost_in_a_trial_if_the_session_asks_for_it() {
+    let terminal = Terminal::open("bell");
+    let (session, connect) = session_with_tracker(&terminal.folder);
+    let text = std::fs::read_to_string(&session).expect("a session file");
+    std::fs::write(&session, text.replace("bell = []", "bell = [\"gaze\"]")).expect("written");
+    let out = terminal.recordings();
+    terminal.run(&["operate", &session, "--out", &out, "--participant", "keyboard", "--gaze", "json"]);
+    terminal.see("READY");
+    let mut tracker = connect();
+    let mut send = |samples: usize| {
+        for _ in 0..samples {
+            writeln!(tracker, "{{\"x\": 0.40, \"y\": 0.35, \"confidence\": 0.9}}").expect("sent");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    };
+    send(20);
+    terminal.begin();
+    assert_eq!(terminal.bells(), 0);
+    // It is watched that gaze comes, and then it does not any more.
+    send(30);
+    terminal.wait("the bell", || terminal.bells() == 1);
+    terminal.quit();
+    assert_eq!(terminal.bells(), 1);
+}
+
+#[test]
 fn gaze_comes_from_any_program_that_writes_lines() {
     let terminal = Terminal::open("json");
     let (session, connect) = session_with_tracker(&terminal.folder);

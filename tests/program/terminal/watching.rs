@@ -19,7 +19,7 @@ fn a_running_session_is_watched_from_another_terminal_and_looked_at_again() {
     other.see("highlight assembly board");
     terminal.quit();
     other.see("CLOSED");
-    other.key("q");
+    other.key("Escape");
     other.is_whole(0);
     other.run(&["replay", &recording]);
     other.see("play 1x");
@@ -31,7 +31,7 @@ fn a_running_session_is_watched_from_another_terminal_and_looked_at_again() {
     }
     other.key("Right");
     other.see("0:00 of");
-    other.key("q");
+    other.key("Escape");
     other.is_whole(0);
 }
 
@@ -140,7 +140,7 @@ fn a_recording_of_a_folder_is_chosen_from_a_list_by_typing() {
     terminal.see("1 of 2");
     terminal.key("Enter");
     terminal.see("play 1x");
-    terminal.key("q");
+    terminal.key("Escape");
     terminal.is_whole(0);
     terminal.run(&["replay", &terminal.recordings(), "--verify"]);
     terminal.see("Which recording of");

@@ -139,7 +139,7 @@ fn wizard_and_assistant_are_compared_live_and_from_another_terminal() {
     terminal.see("What wizard and assistant knew");
     terminal.key("x");
     terminal.wait("a closed dialog", || !terminal.screen().contains("What wizard and assistant knew"));
-    beside.key("q");
+    beside.key("Escape");
     beside.is_whole(0);
     terminal.quit();
     assert_eq!(terminal.count("\"kind\":\"unblinded\",\"concepts\":[\"tom-com\",\"tom\"]"), 1);

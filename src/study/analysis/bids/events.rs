@@ -136,7 +136,7 @@ impl EventCells {
             Event::Preflight { overridden, .. } => self.what = if *overridden { "overridden" } else { "" }.to_string(),
             Event::TrialEnded { reason } => self.reason = reason.name().to_string(),
             Event::TrialAborted { reason } | Event::TrialExcluded { reason } => self.words = reason.clone(),
-            Event::Marker { note } => self.words = note.clone(),
+            Event::Marker { note } | Event::MarkerWorded { note, .. } => self.words = note.clone(),
             Event::Press { agent, button, at_ns } => {
                 (self.agent, self.button, self.at) = (name(agent), button.clone(), *at_ns);
             }
@@ -386,6 +386,7 @@ pub const LEVELS: Levels = &[
     ("human_waits", "The participant has not pressed for unusually long by its own intervals"),
     ("kitchen_corrected", "The wizard corrected what the program thought of a place"),
     ("marker", "The wizard marked this moment"),
+    ("marker_worded", "The wizard's words about a moment marked before"),
     ("offer_closed", "An offer to the wizard closed"),
     ("offer_opened", "A recommendation was offered to the wizard"),
     ("order_cleared", "A served order disappeared"),

@@ -4,8 +4,7 @@ use rand_distr::{Distribution, Gamma, Normal, Poisson};
 use tomcom_session::plan::StudyAims;
 use tomcom_study::arm_comparison::{compare_arms, holm};
 use tomcom_study::effect::LeftOutParticipant;
-use tomcom_study::mixed_models::{CountObservation, NegativeBinomialModel};
-use tomcom_study::mixed_models::{LinearMixedModel, MixedModelMeasurement};
+use tomcom_study::mixed_models::{CountObservation, LinearMixedModel, MixedModelMeasurement, NegativeBinomialModel};
 use tomcom_study::trial_statistics::TrialStatistics;
 
 use super::trial;

@@ -7,8 +7,7 @@ use tomcom_study::pass::describe;
 use tomcom_study::report;
 use tomcom_study::statistics::{hodges_lehmann, permutation_p};
 use tomcom_study::tables::trials::HEADLINE;
-use tomcom_study::trial_statistics::DetailTotals;
-use tomcom_study::trial_statistics::{TrialStatistics, arrange};
+use tomcom_study::trial_statistics::{DetailTotals, TrialStatistics, arrange};
 
 use super::{near, summary, trial, trials};
 use crate::support::*;

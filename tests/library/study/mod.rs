@@ -18,9 +18,9 @@ use tomcom_study::column::CsvTable;
 use tomcom_study::facts::RecordingFacts;
 use tomcom_study::figures::StudySummary;
 use tomcom_study::robot_tally::RobotEventSummary;
-use tomcom_study::trial_statistics::DetailTotals;
-use tomcom_study::trial_statistics::SignalSenderWithParameter;
-use tomcom_study::trial_statistics::{FalseBeliefErrors, TrialStatistics, arrange};
+use tomcom_study::trial_statistics::{
+    DetailTotals, FalseBeliefErrors, SignalSenderWithParameter, TrialStatistics, arrange,
+};
 
 use crate::support::*;
 

@@ -1,8 +1,7 @@
 //! The study against its plan: plans that were frozen before it, and trials that have no recording.
 
 use tomcom_study::files::pool_file::{freeze, read_frozen};
-use tomcom_study::frozen_plan::{FrozenDefinition, FrozenPlan};
-use tomcom_study::frozen_plan::{PlaceInPlan, PreregistrationCheck, RecordedPlan};
+use tomcom_study::frozen_plan::{FrozenDefinition, FrozenPlan, PlaceInPlan, PreregistrationCheck, RecordedPlan};
 use tomcom_study::planned_trial::{MissingTrials, in_words, missing_trials};
 
 use crate::support::*;

@@ -8,9 +8,9 @@ use tomcom_study::drawn_study::{DrawnEffect, SignificanceTestMethod, StudySample
 use tomcom_study::effect::{effect, pairs};
 use tomcom_study::files::pool_file::{read_pool, write_pool};
 use tomcom_study::pool::{POOL_FORMAT, PoolHeader, PoolTrial, PoolTrialCounts, SimulationPool};
-use tomcom_study::power::{PowerRequest, measure};
-use tomcom_study::power::{PowerSummary, describe};
-use tomcom_study::power::{RejectionCount, RejectionShare, least_ratio, ratios};
+use tomcom_study::power::{
+    PowerRequest, PowerSummary, RejectionCount, RejectionShare, describe, least_ratio, measure, ratios,
+};
 use tomcom_study::tables::trials::HEADLINE;
 use tomcom_study::trial_statistics::TrialStatistics;
 

@@ -4,10 +4,8 @@ use tomcom_study::live_arms::live_arms;
 use tomcom_study::prevention::{
     FalseBeliefGroundTruth, HypotheticalSignal, PressGroundTruth, PreventionCounts, TrialGroundTruth,
 };
-use tomcom_study::roc::compare;
-use tomcom_study::roc::{ConceptPreventionCounts, ConceptTotals};
-use tomcom_study::trial_statistics::SignalSenderWithParameter;
-use tomcom_study::trial_statistics::TrialStatistics;
+use tomcom_study::roc::{ConceptPreventionCounts, ConceptTotals, compare};
+use tomcom_study::trial_statistics::{SignalSenderWithParameter, TrialStatistics};
 
 use super::{at, near, trial};
 use crate::support::*;

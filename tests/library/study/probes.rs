@@ -10,19 +10,17 @@ use tomcom_session::follower::SessionFollower;
 use tomcom_session::headless;
 use tomcom_session::probes::{ProbeOrigin, ProbeSubject};
 use tomcom_study::analysis::probe_detection::{ProbeDetection, WeightedProbeBelief};
-use tomcom_study::analysis::probe_figures::ProbeAccuracyGrouping;
-use tomcom_study::analysis::probe_figures::ProbeSummary;
-use tomcom_study::analysis::probe_record::ProbeCollector;
+use tomcom_study::analysis::probe_figures::{ProbeAccuracyGrouping, ProbeSummary};
 use tomcom_study::analysis::probe_record::{
-    AspectAtFreeze, ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial, RecordedBeliefAtFreeze,
+    AspectAtFreeze, ProbeCollector, ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial,
+    RecordedBeliefAtFreeze,
 };
 use tomcom_study::column::CsvRow;
 use tomcom_study::facts::RecordingFacts;
 use tomcom_study::report;
 use tomcom_study::tables::probe_table::{ProbeRow, probes};
 use tomcom_study::tables::trials::PROBES_WRONG;
-use tomcom_study::trial_statistics::DetailTotals;
-use tomcom_study::trial_statistics::TrialDetails;
+use tomcom_study::trial_statistics::{DetailTotals, TrialDetails};
 
 use super::{near, summary, trial, with_details};
 use crate::support::*;

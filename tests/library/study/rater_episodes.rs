@@ -3,12 +3,11 @@
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::FalseBeliefTarget;
 use tomcom_core::measures::errors::PressJudge;
-use tomcom_core::measures::raters::BeliefSource;
-use tomcom_core::measures::raters::{ErrorCauseCode, RaterCodes};
+use tomcom_core::measures::raters::{BeliefSource, ErrorCauseCode, RaterCodes};
 use tomcom_study::prevention::TrialGroundTruth;
-use tomcom_study::rater_episodes::rater_episodes;
-use tomcom_study::rater_episodes::{BeliefEvidence, BeliefEvidenceEvent};
-use tomcom_study::rater_episodes::{KnownFalseBeliefs, RaterFalseBeliefAgreement};
+use tomcom_study::rater_episodes::{
+    BeliefEvidence, BeliefEvidenceEvent, KnownFalseBeliefs, RaterFalseBeliefAgreement, rater_episodes,
+};
 
 use super::at;
 use crate::support::*;

@@ -3,11 +3,8 @@
 use tomcom_core::communication::offer::{
     Offer, OfferCloseReason, OfferKeyKind, OfferUse, OfferedAdvice, OfferedCommunication,
 };
-use tomcom_core::measures::raters::BeliefSource;
-use tomcom_core::measures::raters::RaterConsensus;
-use tomcom_core::measures::raters::{ErrorCauseCode, RaterCodes};
-use tomcom_core::robot::AbortReason;
-use tomcom_core::robot::SafetyMode;
+use tomcom_core::measures::raters::{BeliefSource, ErrorCauseCode, RaterCodes, RaterConsensus};
+use tomcom_core::robot::{AbortReason, SafetyMode};
 use tomcom_session::log::{consensus_file, rater_codes};
 use tomcom_session::plan::QuestionnaireItemKind;
 use tomcom_session::questionnaire::AnswerValue;
@@ -23,9 +20,7 @@ use tomcom_study::prevention::PreventionCounts;
 use tomcom_study::report;
 use tomcom_study::robot_tally::{ArmSafetySummary, RobotEventTally};
 use tomcom_study::roc::ConceptPreventionCounts;
-use tomcom_study::trial_statistics::DetailTotals;
-use tomcom_study::trial_statistics::TrialDetails;
-use tomcom_study::trial_statistics::{QuestionnaireAnswer, TrialStatistics};
+use tomcom_study::trial_statistics::{DetailTotals, QuestionnaireAnswer, TrialDetails, TrialStatistics};
 
 use super::{at, near, summary, trial, trials, with_details};
 use crate::support::*;

@@ -6,8 +6,7 @@ use tomcom_session::protocol::StudyPhase;
 use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::tutorial::{TutorialEvent, TutorialPageTurner};
 use tomcom_session::wall_display::DisplayEvent;
-use tomcom_study::column::{CsvRow, CsvTable, TableCell, TableColumn};
-use tomcom_study::column::{DataDictionaryRow, described, dictionary};
+use tomcom_study::column::{CsvRow, CsvTable, DataDictionaryRow, TableCell, TableColumn, described, dictionary};
 use tomcom_study::files::export::AnalysisFolder;
 use tomcom_study::frozen_plan::RecordedPlan;
 use tomcom_study::kept_cost::KeptCost;
@@ -15,13 +14,11 @@ use tomcom_study::pass::reading::{self, AnalysisScope, RecordingAnalysis};
 use tomcom_study::prevention::PreventionCounts;
 use tomcom_study::roc::ConceptPreventionCounts;
 use tomcom_study::study_part::AnalysedRecording;
-use tomcom_study::tables::participants::TutorialSummary;
-use tomcom_study::tables::participants::participants;
-use tomcom_study::tables::participants::{AnswerRow, answers as answers_of};
-use tomcom_study::tables::participants::{TutorialAnswerCollector, TutorialQuestionRow};
+use tomcom_study::tables::participants::{
+    AnswerRow, TutorialAnswerCollector, TutorialQuestionRow, TutorialSummary, answers as answers_of, participants,
+};
 use tomcom_study::tables::trials::{HEADLINE, MEASURES};
-use tomcom_study::trial_statistics::TrialDetails;
-use tomcom_study::trial_statistics::{QuestionnaireAnswer, TrialStatistics};
+use tomcom_study::trial_statistics::{QuestionnaireAnswer, TrialDetails, TrialStatistics};
 
 use super::probes::one_right_answer;
 use crate::support::*;

@@ -235,12 +235,7 @@ fn synonyms(action: &KeyAction) -> &'static str {
 }
 
 /// Actions that may stand first in the open palette, the most likely one first. None of them changes the trial.
-const FIRST: [KeyAction; 4] = [
-    KeyAction::Accept,
-    KeyAction::Manual(ManualAction::Preflight),
-    KeyAction::Manual(ManualAction::NoteInWords),
-    KeyAction::Help,
-];
+const FIRST: [KeyAction; 3] = [KeyAction::Accept, KeyAction::Manual(ManualAction::Preflight), KeyAction::Help];
 
 /// Opens the palette with this filter. Its first action is the one that was chosen last in it, or else a likely one
 /// that changes nothing. It is decided here once, so that no row moves under the cursor while the palette is open.

@@ -142,7 +142,7 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
         let help = format!("record note {digit} of the session file");
         lines.push(wizards(line(&name, &[KeyChord::char(digit)], KeyAction::Note(index), NOTES, &help, footer)));
     }
-    let help = "mark this time, to be worded later; while no trial runs: type a note";
+    let help = "mark the time; while no trial runs: type a note";
     lines.push(wizards(line(
         "note_in_words",
         &[KeyChord::char('0')],
@@ -311,13 +311,7 @@ fn looks(next: &[KeyChord]) -> [KeyBinding; 5] {
     [
         line("next_panel", next, KeyAction::Look(ViewAction::Next), CONSOLE, panels, Some("panels")),
         look("last_panel", BackTab, ViewAction::Last, "show the previous panel at full size", None),
-        look(
-            "all_panels",
-            Esc,
-            ViewAction::All,
-            "one step back: all panels at the present time, then quit",
-            Some("back"),
-        ),
+        look("all_panels", Esc, ViewAction::All, "one step back; from the first view: quit", Some("back")),
         look("back", Up, ViewAction::Back, "scroll events or timeline back", None),
         look("forward", Down, ViewAction::Forward, "scroll events or timeline forward again", None),
     ]

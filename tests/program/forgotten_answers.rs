@@ -13,6 +13,7 @@ use tomcom_session::log::LogWriter;
 use tomcom_session::plan::{AnswerFormat, PhaseSpec, Questionnaire, QuestionnaireSpec, WantedRecording};
 use tomcom_session::protocol::ProtocolEvent;
 use tomcom_session::questionnaire::AnswerValue;
+use tomcom_session::settings::{GazeSource, ParticipantKind};
 use tomcom_session::wall_display::AnswerDevice;
 use tomcom_session::{Event, LogHeader, TrialPhase};
 
@@ -26,6 +27,7 @@ const CONSENT: &str = "I have read the information sheet.";
 fn record(root: &Path, participant: usize, words: &str) {
     let mut files = read_session(Path::new("sessions/study.toml")).expect("the study");
     files.spec.trial.presses = 10;
+    (files.spec.participant.kind, files.spec.participant.gaze) = (ParticipantKind::Simulated, GazeSource::Simulated);
     let plan = files.spec.plan.as_mut().expect("a plan");
     plan.consent = CONSENT.to_string();
     (plan.questionnaire, files.questionnaires) = (Vec::new(), Vec::new());

@@ -124,7 +124,9 @@ impl Live {
         self.watch_for_bell();
         if let Some(by_ms) = self.clock.jump() {
             self.input(Event::ClockJumped { by_ms });
-            let text = format!("the computer's clock jumped by {:.1} s: session time did not", by_ms as f64 / 1000.0);
+            let ahead_s = by_ms as f64 / 1000.0;
+            let text =
+                format!("session time lost {ahead_s:.1} s: the program stood still, or the computer's clock was set");
             self.model.say(NoticeLevel::Alarm, text);
         }
         self.model.viewers = self.viewing.as_ref().map(StreamedSession::status);

@@ -330,7 +330,7 @@ fn a_paste_filters_a_list_and_chooses_nothing() {
     assert_eq!(stage.key(KeyCode::Esc), None);
     assert_eq!(stage.key(KeyCode::Esc), None);
     stage.wait(1.0);
-    assert_eq!(stage.control('x'), None);
+    assert_eq!(stage.control('x'), Some(ConsoleCommand::Input(Event::TrialPaused)));
     assert_eq!(stage.paste(Some("tech")), None);
     let Some(Dialog::Pick(picker)) = &stage.model.dialog else { panic!("{:?}", stage.model.dialog) };
     assert_eq!(picker.cursor.filter, "tech");

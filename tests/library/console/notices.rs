@@ -131,14 +131,14 @@ fn a_time_mark_is_set_at_once_and_gets_its_words_when_the_trial_stands() {
     let marks: Vec<u64> = stage.session.open_marks.iter().map(|(mark, _)| *mark).collect();
     stage.at(26.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
     stage.wait(1.0);
-    stage.shows((120, 40), &["time marks", "without words at 0:23, 0:24", "0 word the time marks"]);
+    stage.shows((120, 40), &["time marks", "without words at 0:20, 0:21", "0 word the time marks"]);
     stage.key(KeyCode::Char('0'));
-    stage.shows((80, 24), &["The time mark at 0:23: its words", "1 more marks follow"]);
+    stage.shows((80, 24), &["The time mark at 0:20: its words", "1 more marks follow"]);
     type_in(&mut stage, "looked away");
     let worded = Event::MarkerWorded { marker: marks[0], note: "looked away".to_string() };
     assert_eq!(input(stage.key(KeyCode::Enter)), Some(worded.clone()));
     stage.at(28.0, worded);
-    stage.shows((80, 24), &["The time mark at 0:24: its words"]);
+    stage.shows((80, 24), &["The time mark at 0:21: its words"]);
     // A mark may stay without words.
     let without = Event::MarkerWorded { marker: marks[1], note: String::new() };
     stage.wait(1.0);

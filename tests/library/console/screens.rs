@@ -154,7 +154,7 @@ fn the_help_has_first_the_keys_that_do_something_now_and_keeps_its_order_while_i
         below.iter().map(text).collect::<Vec<String>>().join("\n")
     };
     let idle = without(&stage.screen((200, 60)));
-    for text in ["resume the robot after a stop", "type a note", "show the preflight checks"] {
+    for text in ["resume the robot after a stop", "check gaze accuracy", "show the preflight checks"] {
         assert!(idle.contains(text), "{text:?} does nothing while the trial runs:\n{idle}");
     }
     for text in ["stop the robot, at once", "start, pause or resume the trial", "quit tomcom"] {

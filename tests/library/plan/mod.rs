@@ -10,8 +10,11 @@ use tomcom_session::plan::Study;
 
 use crate::support::*;
 
+/// The study of the project as it is rehearsed: with simulated participants.
 fn files() -> SessionSetup {
-    session_file("study")
+    let mut files = session_file("study");
+    (files.spec.participant.kind, files.spec.participant.gaze) = (ParticipantKind::Simulated, GazeSource::Simulated);
+    files
 }
 
 fn study(change: impl Fn(&mut SessionSetup)) -> Study {

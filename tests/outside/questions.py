@@ -115,6 +115,9 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         for hold in [False, True]:
             page.ask(f"({FORGED})({json.dumps(hold)})")
             console.wait_for("its button was not held long enough")
+        # Who does not agree says so, which the console is told; nothing begins.
+        click(".declines")
+        console.wait_for("I do not agree")
         page.page.reload()
         item("consent")
         assert not list((folder / "recordings").glob("*/")), "recorded without consent"

@@ -82,7 +82,7 @@ fn analysis(name: &str) -> RecordingAnalysis {
 /// A loss counts for as long as the trial's clock goes: neither before the trial nor in a pause.
 #[test]
 fn losses_of_the_display_are_counted_on_the_trials_clock() {
-    let mut files = session_file("default.toml");
+    let mut files = read_session(Path::new("sessions/default.toml")).expect("a session file of the project");
     (files.spec.participant.kind, files.spec.participant.gaze) = (ParticipantKind::Display, GazeSource::None);
     let header = LogHeader::new(files.spec.clone(), 0, files.kitchen.layout.clone(), files.kitchen.recipes.clone());
     let mut log = LogWriter::create_live(&folder("display-lost"), "2026-03-14", &header).expect("a folder");

@@ -153,7 +153,7 @@ def probe_pages(scene, kitchen, dishes):
         "stack": {"text": said("ask " + board.replace("_", " ")), "about": {"location": at[board]}, "choices": cards(*menu[:3], *stacks, *items)},
         "few": {"text": said("ask place", label(at[small])), "about": {"location": at[small]}, "choices": [nothing, *items[:2], *stacks]},
         "recipe": {"text": said("ask recipe", scene["dishes"][dish]["label"]), "about": {"dish": dish}, "choices": [("", {"recipe": variant}) for variant in variants]},
-        "order": {"text": said("ask order", label(orders[0])), "about": {"order": 0}, "choices": [(said("no order"), "empty"), (said("served"), None), *menu]},
+        "order": {"text": said("ask order", label(orders[0])), "about": {"order": 0}, "choices": [(said("no order"), "empty"), (said("served"), "served"), *menu]},
         "next order": {"text": said("ask next order"), "choices": [(label(index), {"order": number}) for number, index in enumerate(orders)]},
         "next press": {"text": said("ask next press"), "about": {"location": at["robot_hand"]}, "choices": (takes + uses)[:11] + [other]},
         "sure": {"text": said("ask robot hand"), "about": {"location": at["robot_hand"]}, "choices": cards(*items), "confidence": True, "touched": [3]},

@@ -46,6 +46,8 @@ pub struct ProbeChoice {
 #[serde(rename_all = "snake_case")]
 pub enum ProbePicture {
     Empty,
+    /// An order that is served.
+    Served,
     Item(String),
     Stack(Vec<String>),
     Dish(String),
@@ -198,7 +200,7 @@ fn content(kitchen: &Kitchen, words: &DisplayWords, location: &str, name: &str) 
     let dish = || Some(ProbePicture::Dish(name.to_string()));
     match (is_order, name) {
         (true, "none") => return (words.of_name("no order"), Some(ProbePicture::Empty)),
-        (true, "served") => return (words.of_name("served"), None),
+        (true, "served") => return (words.of_name("served"), Some(ProbePicture::Served)),
         (true, _) => return (words.of_name(name), dish()),
         (false, _) => {}
     }

@@ -182,13 +182,17 @@ impl SimulatedParticipant {
         let mut random = self.of_answer(probe, question);
         let _time = normal(&mut random);
         let labels = &self.kitchen.aspects[aspect.index()].labels;
-        let most_likely = witness::rounded(self.beliefs.certainty(aspect));
-        let p_truth = witness::rounded(self.beliefs.p_truth(&self.kitchen, state, aspect));
-        let believed = match p_truth >= most_likely {
-            true => &labels[self.kitchen.true_value(state, aspect)],
-            false => &labels[self.beliefs.most_likely(aspect)],
-        };
-        let believed = choices.iter().find(|choice| *choice == believed).or(choices.last())?;
+        let place = |value: usize| choices.iter().position(|choice| *choice == labels[value]);
+        let choice_of = |value: usize| place(value).unwrap_or(choices.len().saturating_sub(1));
+        let mut chances = vec![0.0; choices.len()];
+        for (value, chance) in self.beliefs.distribution(aspect).iter().enumerate() {
+            *chances.get_mut(choice_of(value))? += chance;
+        }
+        let (truth, likely) =
+            (choice_of(self.kitchen.true_value(state, aspect)), choice_of(self.beliefs.most_likely(aspect)));
+        let best = (0..choices.len()).fold(likely, |best, one| if chances[one] > chances[best] { one } else { best });
+        let most_likely = witness::rounded(chances[best]);
+        let believed = &choices[if witness::rounded(chances[truth]) >= most_likely { truth } else { best }];
         if chance(&mut random, self.person.answers_wrong) {
             let others: Vec<&String> = choices.iter().filter(|choice| *choice != believed).collect();
             return (!others.is_empty()).then(|| others[random.random_range(0..others.len())].clone());

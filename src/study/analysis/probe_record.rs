@@ -319,8 +319,10 @@ impl ProbeCollector {
         for (label, p) in labels.iter().zip(estimate.mean()) {
             *estimate_p.entry(chosen(label)).or_default() += p;
         }
+        let right = chosen(&labels[truth]);
+        let is_right = |value: &str| question.choice_for(value) == right;
         // Values that share a choice have a Dirichlet distribution together, too.
-        let estimate_p_truth = estimate_p[&chosen(&labels[truth])];
+        let estimate_p_truth = estimate_p[&right];
         let [of_truth, of_others] = [estimate_p_truth, 1.0 - estimate_p_truth].map(|mean| mean * estimate.precision());
         let believed = self.belief.as_ref().filter(|(at, _)| *at == now);
         let believed = believed.and_then(|(_, witness)| witness.aspects.get(aspect.index()));
@@ -337,8 +339,10 @@ impl ProbeCollector {
             estimate_p,
             estimate_p_truth,
             estimate_p_false: regularized_incomplete_beta(FALSE_BELOW, of_truth, of_others),
-            believed: believed
-                .map(|own| RecordedBeliefAtFreeze { believes: chosen(&own.believes), p_truth: own.p_truth }),
+            believed: believed.map(|own| RecordedBeliefAtFreeze {
+                believes: chosen(&own.believes),
+                p_truth: own.p_truth.max(own.values.iter().filter(|(value, _)| is_right(value)).map(|(_, p)| p).sum()),
+            }),
             changed_s: location.and_then(|location| self.seen.changed_s(session, location)),
             changed_unseen: location.map(|location| self.seen.is_changed_unseen(location)),
             usual: of_location(location.map(|location| self.seen.usual(session, location))),

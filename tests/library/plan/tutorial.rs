@@ -293,7 +293,7 @@ fn a_wrong_tutorial_names_file_line_and_what_would_be_right() {
         ("point_at = [\"order_1\", ", "point_at = [\"order_9\", ", "order_9"),
         ("right = 3", "right = 4", "right = 4"),
         ("about = \"cutting_board\"", "about = \"oven\"", "oven"),
-        ("presses = [\"take tuna\", \"counter\"]", "presses = [\"take crab\"]", "take crab"),
+        ("presses = [\"take nori\", \"assembly_board\"]", "presses = [\"take crab\"]", "take crab"),
         ("id = \"ask_crab\"", "id = \"ask_shape\"", "twice"),
         ("seconds = 60.0", "seconds = -1.0", "seconds = -1"),
         ("plate\", \"serve 1\"", "plate\"", "do not serve"),

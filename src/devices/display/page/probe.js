@@ -47,9 +47,10 @@ const Probe = (() => {
     list.classList.toggle("beside", best.beside);
   }
 
-  /** Picture of a choice: a content, a place, or nothing. */
+  /** Picture of a choice: a content, a place, nothing, or what is not shown. */
   function pictureOf(shows, { scene, contentOf }) {
-    if (!shows || shows === "empty") return `<span class="nothing"></span>`;
+    if (!shows) return `<span class="other">…</span>`;
+    if (shows === "empty") return `<span class="nothing"></span>`;
     if (shows.order !== undefined) return `<span class="order-sign">${Number(shows.order) + 1}</span>`;
     if (shows.location !== undefined) {
       const { look, kind } = scene.locations[shows.location];

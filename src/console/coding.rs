@@ -7,7 +7,7 @@ use super::console_model::{ConsoleCommand, ConsoleModel, NoticeLevel, ReplayActi
 use super::key_action::{KeyAction, KeyBinding, RaterAction};
 use super::keys::KeyBindings;
 use super::text_columns::{width, wrap};
-use super::view::regions::{PanelAreas, ScreenSize, below_title};
+use super::view::regions::{PanelAreas, ScreenSize, inside};
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::measures::raters::RaterConsensus;
 use tomcom_core::measures::raters::{ErrorCauseCode, ErrorCauseKind, RaterCodes};
@@ -389,8 +389,8 @@ impl ErrorListLayout {
             (CodingRaters::Pair { .. }, true) if area.height > 3 => (area, 2),
             (_, true) => (area, 1),
             // Lines above the list of errors: the progress bar, and the present error or the next step.
-            (CodingRaters::Rater(_), false) => (below_title(area), 3),
-            (CodingRaters::Pair { .. }, false) => (below_title(area), 4),
+            (CodingRaters::Rater(_), false) => (inside(area), 3),
+            (CodingRaters::Pair { .. }, false) => (inside(area), 4),
         };
         let head_rows = head_rows.min(inside.height);
         let head = Rect { height: head_rows, ..inside };

@@ -7,6 +7,7 @@ use super::form::sheet;
 use super::interventions::{can_redo, skippable};
 use super::key_action::{KeyAction, KeyBinding, ManualAction, RaterAction, ViewAction};
 use super::key_press::is_right_after_list;
+use super::panels::opens_difference;
 use super::preflight;
 use tomcom_core::communication::Sender;
 use tomcom_session::admit::admit;
@@ -108,6 +109,8 @@ fn does(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {
         }
         KeyAction::Differ(step) => differs(model, *step),
         KeyAction::Rate(rate) => rates(model, *rate),
+        KeyAction::Look(ViewAction::Open) if opens_difference(model) => differs(model, ComparisonAction::Open),
+        KeyAction::Look(ViewAction::Open) => model.focus.is_some(),
         KeyAction::SwitchLayer | KeyAction::Look(_) | KeyAction::Help | KeyAction::Palette | KeyAction::Quit => true,
     }
 }

@@ -9,7 +9,9 @@ use std::path::Path;
 
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::files::file_error::{FileError, FileResult};
+use tomcom_session::follower::SessionFollower;
 use tomcom_session::history::belief_track::{BeliefHistory, BeliefSnapshot};
+use tomcom_session::history::error_reasons::ExplainedError;
 use tomcom_session::log::LogPlace;
 use tomcom_session::replay::RecordingReplay;
 use tomcom_session::replay::ReplayLandmark;
@@ -94,8 +96,8 @@ struct Snapshots {
 #[derive(Debug)]
 pub struct SeekableReplay {
     pub(super) replay: RecordingReplay,
-    /// Session times of the human's errors.
-    pub errors: Vec<SessionTime>,
+    /// The human's errors in the order of time.
+    pub errors: Vec<ExplainedError>,
     judged: usize,
     /// History of the belief estimate over the recording.
     pub beliefs: BeliefHistory,
@@ -185,9 +187,8 @@ impl SeekableReplay {
     pub fn read_while(&mut self, goes_on: impl Fn() -> bool) -> FileResult<bool> {
         let before = self.read_events();
         while goes_on() && self.read_event()? {}
-        let judged = &self.replay.follower.judged;
-        let new = judged[self.judged..].iter().filter(|press| press.verdict.error).map(|press| press.time);
-        self.errors.extend(new);
+        let SessionFollower { judged, session, .. } = &self.replay.follower;
+        self.errors.extend(ExplainedError::among(&session.kitchen, &judged[self.judged..]));
         self.judged = judged.len();
         Ok(self.read_events() > before)
     }
@@ -361,7 +362,7 @@ impl SeekableReplay {
     pub fn landmark(&mut self, what: ReplayLandmark, forward: bool) -> Option<usize> {
         let now = self.time();
         let times: Vec<SessionTime> = match what {
-            ReplayLandmark::Error => self.errors.clone(),
+            ReplayLandmark::Error => self.errors.iter().map(|error| error.time).collect(),
             ReplayLandmark::FalseBelief => self.beliefs.newly_false().collect(),
             ReplayLandmark::Signal | ReplayLandmark::Marker => {
                 self.steps.iter().filter(|step| step.landmark == Some(what)).map(|step| step.time).collect()

@@ -289,8 +289,8 @@ impl SessionFollower {
             self.episodes.erred(&kitchen, cause);
         }
         let belief_known = belief.is_some();
-        let (seq, time, before) = (stamped.seq, stamped.time, press.before);
-        self.judged.push(JudgedPress { seq, time, before, verdict, belief_known, cause });
+        let (seq, time, button, before) = (stamped.seq, stamped.time, press.button, press.before);
+        self.judged.push(JudgedPress { seq, time, button, before, verdict, belief_known, cause });
     }
 
     /// Number of judged presses whose cost to go is not proven.

@@ -13,7 +13,7 @@ use crate::console::console_model::{ConsoleModel, Dialog, Notice, NoticeLevel, R
 use crate::console::interventions::can_redo;
 use crate::console::key_action::{KeyAction, KeyBinding, KeyLayer, ManualAction, RaterAction, ViewAction};
 use crate::console::mouse::ClickAction;
-use crate::console::panels::is_away;
+use crate::console::panels::{is_away, opens_difference};
 use crate::console::possible::is_possible;
 use crate::console::text_columns::width;
 use tomcom_session::history::wording;
@@ -51,7 +51,9 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
         true => !matches!(binding.action, KeyAction::Advance | KeyAction::Quit | KeyAction::Manual(ManualAction::Redo)),
         false => matches!(
             binding.action,
-            KeyAction::EndTrial | KeyAction::Look(ViewAction::Next) | KeyAction::Manual(ManualAction::NoteInWords)
+            KeyAction::EndTrial
+                | KeyAction::Look(ViewAction::Next | ViewAction::Open)
+                | KeyAction::Manual(ManualAction::NoteInWords)
         ),
     };
     let (mut late, mut first): (Vec<&KeyBinding>, Vec<&KeyBinding>) = model.keys.bindings.iter().partition(is_late);
@@ -221,6 +223,7 @@ fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -
         KeyAction::Manual(ManualAction::NoteInWords) if session.is_running() => Some("mark"),
         // Where nothing is to be undone, one step back leaves; live, the key that quits says so.
         KeyAction::Look(ViewAction::All) if !is_away(model) => model.playback.as_ref().map(|_| "leave"),
+        KeyAction::Look(ViewAction::Open) if opens_difference(model) => Some("difference"),
         KeyAction::Quit if is_over && session.is_step_done() => Some("close the session"),
         KeyAction::Quit if model.coding.as_ref().is_some_and(|coding| coding.is_saved) => Some("quit (saved)"),
         // After the trial the robot rests, and the line of key hints offers only the next step.
@@ -228,7 +231,7 @@ fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -
         | KeyAction::ResumeRobot
         | KeyAction::SwitchLayer
         | KeyAction::TakeBack
-        | KeyAction::Look(ViewAction::Next)
+        | KeyAction::Look(ViewAction::Next | ViewAction::Open)
             if is_over =>
         {
             None

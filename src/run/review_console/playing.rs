@@ -7,6 +7,7 @@ use crate::console::console_model::NoticeLevel;
 use crate::console::console_model::{ReplayAction, SPEEDS};
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::Event;
+use tomcom_session::history::error_reasons::ExplainedError;
 use tomcom_session::replay::ReplayLandmark;
 
 /// Longest time per frame that is spent on applying events at full speed.
@@ -34,7 +35,10 @@ impl Review {
             ReplayAction::On(what) => self.look_for(what, true),
             ReplayAction::BackTo(what) => self.look_for(what, false),
             ReplayAction::ToStart => self.stand_at(0),
-            ReplayAction::ToEvent(number) => self.stand_at(number as usize + 1),
+            ReplayAction::ToEvent(number) => {
+                self.stand_at(number as usize + 1);
+                self.explain_error();
+            }
             ReplayAction::ToTime(time) => self.seek(time),
             ReplayAction::SeekForward => self.seek(self.now + SEEK),
             ReplayAction::SeekBack => self.seek(self.now - SEEK),
@@ -63,11 +67,26 @@ impl Review {
     /// Moves the replay to the next or previous landmark of this kind, if there is one.
     fn look_for(&mut self, what: ReplayLandmark, forward: bool) {
         match self.film.landmark(what, forward) {
-            Some(position) => self.stand_at(position),
+            Some(position) => {
+                self.stand_at(position);
+                if what == ReplayLandmark::Error {
+                    self.explain_error();
+                }
+            }
             None => {
                 let which = if forward { "later" } else { "earlier" };
                 self.model.say(NoticeLevel::Refused, format!("the recording has no {which} {}", what.name()));
             }
+        }
+    }
+
+    /// Says which error the replay stands at, if it stands at one, and why it is one.
+    fn explain_error(&mut self) {
+        let errors = &self.film.errors;
+        if let Some(at) = errors.iter().position(|error| error.time == self.now) {
+            let ExplainedError { press, why, .. } = &errors[at];
+            let said = format!("error {} of {}: {press}: {why}", at + 1, errors.len());
+            self.model.say(NoticeLevel::Done, said);
         }
     }
 

@@ -6,7 +6,7 @@ mod matching;
 use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::{Agent, AspectId, DishId, Kitchen, LocationId, OrderContent, State};
+use tomcom_core::kitchen::{Agent, AspectId, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::{ErrorAttributor, ErrorCause, FalseBeliefTarget};
 use tomcom_core::measures::errors::{PressJudge, PressVerdict};
@@ -208,9 +208,11 @@ fn presses(text: &str) -> Vec<JudgedPress> {
             }
         };
         let (race, error) = (letter == 'r', cause.is_some());
-        let verdict = PressVerdict { regret: i32::from(error), excess: i32::from(error), race, error, is_proven: true };
+        let excess = i32::from(error);
+        let verdict = PressVerdict { regret: excess, excess, race, error, is_proven: true, best: None };
         let before = kitchen("sushi").empty_state();
-        JudgedPress { seq: index as u64, time: at(index as f64), before, verdict, belief_known: true, cause }
+        let (seq, time, button) = (index as u64, at(index as f64), ButtonId(0));
+        JudgedPress { seq, time, button, before, verdict, belief_known: true, cause }
     };
     text.chars().enumerate().map(press).collect()
 }

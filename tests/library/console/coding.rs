@@ -33,6 +33,7 @@ fn rated(party: CodingRaters, given: RaterCodes) -> Stage {
         time_s: 7.0 + 31.0 * index as f64,
         button: buttons[index % buttons.len()].to_string(),
         effective: index % 3 != 1,
+        why: "order 1 needs tuna".to_string(),
     };
     stage.model.coding = Some(RaterSession::new(party, (0..12).map(error).collect(), given));
     stage.model.playback = Some(Playback { event: 201, events: 1300, ..Playback::new("2026-03-14-P01-1".to_string()) });
@@ -73,7 +74,8 @@ fn every_code_has_its_key_in_every_panel_and_no_key_tells_what_is_estimated() {
     let mut stage = rater(RaterCodes::default());
     for _ in 0..5 {
         stage.wait(1.0);
-        stage.key(KeyCode::Tab);
+        stage.control('w');
+        stage.control('o');
         stage.shows((80, 24), &["1 slip", "2 race", "3 other", "4 mixed up buttons", "q order 1", "m rolling mat"]);
     }
     let tells = |action: &KeyAction| *action == KeyAction::Belief || matches!(action, KeyAction::Differ(_));

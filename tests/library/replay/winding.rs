@@ -131,7 +131,7 @@ fn a_replay_goes_from_one_error_signal_or_false_belief_to_the_next_and_back() {
     let out = simulated("default.toml", ArmKind::Timed, "landmarks", 1, 4);
     let recording = only_recording(&out);
     let mut film = SeekableReplay::open(&recording).expect("a recording");
-    let mut errors = film.errors.clone();
+    let mut errors: Vec<SessionTime> = film.errors.iter().map(|error| error.time).collect();
     errors.dedup();
     assert!(errors.len() > 2, "{errors:?}");
     let mut visited = Vec::new();

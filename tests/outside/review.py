@@ -55,7 +55,7 @@ def main():
     try:
         url = next(found[0] for line in served.stdout if (found := re.search(r"http://\S+", line)))
         with browser(*SOFTWARE) as chromium:
-            page = chromium.new_page(viewport=SIZE)
+            page = chromium.new_page(viewport=SIZE, color_scheme="dark")
             page.goto(url, wait_until="domcontentloaded")
             page.add_script_tag(content=KEEP)
             end, there = time.monotonic() + PATIENCE_S, None

@@ -64,22 +64,24 @@ pub struct AnalysisScope {
 /// Sums up the times at which the participant's display was lost, on the trial's clock.
 #[derive(Debug, Default)]
 struct DisplayLossTally {
+    /// Trial's clock at the beginning of the open loss.
     lost: Option<SessionTime>,
     losses: DisplayLosses,
 }
 
 impl DisplayLossTally {
     fn note(&mut self, stamped: &TimestampedEvent, session: &Session) {
+        let clock = session.trial_clock(stamped.time);
         match stamped.event {
-            Event::Display(DisplayEvent::Lost) => self.lost = self.lost.or(Some(stamped.time)),
-            Event::Display(DisplayEvent::Connected { .. }) => self.close(session, stamped.time),
+            Event::Display(DisplayEvent::Lost) => self.lost = self.lost.or(Some(clock)),
+            Event::Display(DisplayEvent::Connected { .. }) => self.close(clock),
             _ => {}
         }
     }
 
     /// Ends a loss that is still open; losses while the trial's clock stood do not count.
-    fn close(&mut self, session: &Session, now: SessionTime) {
-        let seconds = self.lost.take().map_or(0.0, |lost| since(session, lost, now));
+    fn close(&mut self, clock: SessionTime) {
+        let seconds = self.lost.take().map_or(0.0, |lost| clock.secs_since(lost));
         if seconds > 0.0 {
             self.losses.times += 1;
             self.losses.seconds += seconds;
@@ -87,7 +89,7 @@ impl DisplayLossTally {
     }
 
     fn finish(mut self, session: &Session) -> DisplayLosses {
-        self.close(session, session.time);
+        self.close(session.trial_clock(session.time));
         self.losses
     }
 }

@@ -67,7 +67,8 @@ pub struct TutorialStep {
     /// `robot`: the robot's.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub presses: Vec<String>,
-    /// With `order`, with a signal that shows a recipe, and with a text that explains orders.
+    /// With `order`, with a signal that shows a recipe, with a text that explains orders, and with a probe, whose answers
+    /// depend on what is ordered.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub dish: Option<String>,
     /// With `signal`: the highlighted location; without it, the signal shows the recipe of `dish`.
@@ -231,7 +232,7 @@ fn check_step(step: &TutorialStep) -> Result<(), SettingError> {
         (
             "dish",
             step.dish.is_some(),
-            matches!(kind, Order | Signal | Text),
+            matches!(kind, Order | Probe | Signal | Text),
             kind == Order || (kind == Signal && step.highlight.is_none()),
         ),
         ("highlight", step.highlight.is_some(), kind == Signal && step.dish.is_none(), false),

@@ -213,8 +213,12 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         keyboard.press("1")
         page.wait_for("!Stage.shown().question.item")
         pictures("confirm")
-        # No answer is broken that has room in half of the line.
-        broken = page.ask("[...document.querySelectorAll('.given b')].filter((made) => made.clientHeight > 1.8 * parseFloat(getComputedStyle(made).fontSize)).map((made) => made.textContent)")
+        # No word of an answer is broken.
+        broken = page.ask("""[...document.querySelectorAll(".given b")].filter((made) => {
+            const range = document.createRange();
+            range.selectNodeContents(made);
+            return !made.textContent.includes(" ") && range.getClientRects().length > 1;
+        }).map((made) => made.textContent)""")
         assert not broken, broken
         keyboard.press("Enter")
         page.stage("answered")

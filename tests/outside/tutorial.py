@@ -36,6 +36,7 @@ def session_file(folder, seconds):
     text = Path("sessions/study.toml").read_text().replace("../layouts", str(Path("layouts").resolve()))
     text = text.replace("questionnaires/", f"{Path('sessions/questionnaires').resolve()}/")
     path = folder / "study.toml"
+    text = text.replace('arm = "none"', 'arm = "hand"')
     path.write_text(text.replace("[display]\n", f"[display]\nport = {PORT}\n") + "\n[probes]\nper_trial = 0\n")
     return path
 

@@ -18,9 +18,10 @@ use sha2::{Digest, Sha256};
 use tomcom_session::files::file_error::{open_regular, read_regular};
 use tomcom_session::files::replace_file;
 use tomcom_session::log::{LOG_NAME, corrected_code};
-use tomcom_session::settings::Condition;
+use tomcom_session::settings::{Condition, ParticipantKind};
 use tomcom_session::study_arm::StudyArm;
 use tomcom_session::{Event, TimestampedEvent};
+use tomcom_study::analysis::recording_summary::TrialKind;
 
 /// Number of bytes at the end of a log that its digest covers.
 const TAIL: u64 = 4096;
@@ -54,6 +55,7 @@ pub struct ClosedLogHeader {
     pub code: String,
     /// Condition of the trial: who could send signals.
     pub condition: Condition,
+    pub kind: TrialKind,
     /// Wall clock time at which the recording began (UTC, RFC 3339).
     pub date: Option<String>,
 }
@@ -72,11 +74,20 @@ struct HeaderGlance {
 struct SettingsGlance {
     participant: ParticipantGlance,
     trial: TrialGlance,
+    #[serde(default)]
+    step: Option<StepGlance>,
 }
 
 #[derive(Deserialize)]
 struct ParticipantGlance {
     code: String,
+    kind: ParticipantKind,
+}
+
+#[derive(Deserialize)]
+struct StepGlance {
+    #[serde(default)]
+    period: Option<serde::de::IgnoredAny>,
 }
 
 #[derive(Deserialize)]
@@ -99,12 +110,17 @@ impl ClosedLogHeader {
         if last.event != Event::SessionEnded || header.continues.is_some() {
             return None;
         }
-        let SettingsGlance { participant, trial } = header.session;
+        let SettingsGlance { participant, trial, step } = header.session;
+        let kind = TrialKind {
+            simulated: participant.kind == ParticipantKind::Simulated,
+            practice: step.is_some_and(|step| step.period.is_none()),
+        };
         let correction = corrected_code(recording, &participant.code).ok()?;
         Some(ClosedLogHeader {
             digest: tail.digest(),
             code: correction.map_or(participant.code, |correction| correction.after),
             condition: trial.condition,
+            kind,
             date: header.started,
         })
     }

@@ -18,7 +18,9 @@ use tomcom_session::apply;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::log::{LogEnding, LogReader};
 use tomcom_session::settings::ConsoleSpec;
-use tomcom_study::analysis::recording_summary::{ExclusionStatus, ListedRecording, RecordingList, RecordingState};
+use tomcom_study::analysis::recording_summary::{
+    ExclusionStatus, ListedRecording, RecordingList, RecordingState, TrialKind,
+};
 use tomcom_study::files::recordings;
 use tomcom_study::kept_cost::KeptCost;
 use tomcom_study::{parallel, standing};
@@ -76,6 +78,7 @@ fn read_or_tell(
         code: None,
         condition: None,
         arm: None,
+        kind: None,
         date: None,
         trial_s: None,
         errors: None,
@@ -89,8 +92,9 @@ fn read_or_tell(
         return (from_figures(path, depth, glance, figures).unwrap_or_else(unreadable), None);
     }
     match read(path, depth, cost) {
-        Ok((row, at_console)) => {
-            let glance = glance.filter(|_| at_console.counts());
+        Ok(row) => {
+            // The cache stands for whole recordings only: a closed log does not tell another state at a glance.
+            let glance = glance.filter(|_| row.state == RecordingState::Whole);
             let new = glance.zip(row.arm.zip(row.trial_s).zip(row.errors));
             let new = new.map(|(glance, ((arm, trial_s), errors))| {
                 (glance.digest, CachedRecordingNumbers { arm, trial_s, errors })
@@ -115,6 +119,7 @@ fn from_figures(
         code: Some(glance.code.clone()),
         condition: Some(glance.condition),
         arm: Some(figures.arm),
+        kind: Some(glance.kind),
         date: glance.date.clone(),
         trial_s: Some(figures.trial_s),
         errors: (depth == RecordingListDetail::WithErrors).then_some(figures.errors),
@@ -123,13 +128,8 @@ fn from_figures(
     })
 }
 
-/// Applies all events of a recording; `cost` is kept for the next recording of the same kitchen. Returns also whether
-/// the trial was aborted or excluded at the console.
-fn read(
-    path: &Path,
-    depth: RecordingListDetail,
-    cost: &mut KeptCost,
-) -> FileResult<(ListedRecording, ExclusionStatus)> {
+/// Applies all events of a recording; `cost` is kept for the next recording of the same kitchen.
+fn read(path: &Path, depth: RecordingListDetail, cost: &mut KeptCost) -> FileResult<ListedRecording> {
     let mut log = LogReader::open(path)?;
     let mut session = log.session();
     let kitchen = session.kitchen.clone();
@@ -146,26 +146,25 @@ fn read(
             }
         }
     }
-    let at_console = ExclusionStatus::at_console(&session);
-    let standing = standing::with_ruling(at_console.clone(), log.folder())?;
+    let standing = standing::with_ruling(ExclusionStatus::at_console(&session), log.folder())?;
     let state = match log.ending() {
         LogEnding::Running => RecordingState::Running,
         _ if !standing.counts() => RecordingState::Excluded,
         LogEnding::Cut => RecordingState::Cut,
         LogEnding::Closed => RecordingState::Whole,
     };
-    let row = ListedRecording {
+    Ok(ListedRecording {
         recording: name(path),
         code: Some(session.spec.participant.code.clone()),
         condition: Some(session.spec.trial.condition),
         arm: Some(session.study_arm()),
+        kind: Some(TrialKind::from_spec(&session.spec)),
         date: log.header.started.clone(),
         trial_s: Some(session.trial_clock(session.time).as_secs_f64()),
         errors: (depth == RecordingListDetail::WithErrors).then_some(errors),
         state,
         reason: (state == RecordingState::Excluded).then(|| standing.describe()),
-    };
-    Ok((row, at_console))
+    })
 }
 
 /// Period of redrawing the list of recordings, in case the terminal's size changed.
@@ -177,13 +176,15 @@ const REDRAW: Duration = Duration::from_millis(100);
 /// The folder cannot be read or has no recordings, or there is no terminal.
 pub fn pick(folder: &Path) -> Result<Option<PathBuf>, ReviewError> {
     let (list, paths) = list(folder, RecordingListDetail::Quick, |_| (), || ())?;
+    let mut newest: Vec<(&ListedRecording, PathBuf)> = list.recordings.iter().zip(paths).collect();
+    newest.sort_by_key(|(one, _)| std::cmp::Reverse((&one.date, &one.recording)));
     // The list has no column of errors here, since counting errors takes long.
-    let without_errors = |cells: [String; 7]| {
-        let [code, condition, date, length, _, state, recording] = cells;
-        vec![code, condition, date, length, state, recording]
+    let without_errors = |cells: [String; 8]| {
+        let [code, condition, kind, date, length, _, state, recording] = cells;
+        vec![code, condition, kind, date, length, state, recording]
     };
     let headings = without_errors(RecordingList::HEADINGS.map(str::to_string));
-    let rows = list.recordings.iter().map(|one| without_errors(one.cells())).collect();
+    let rows = newest.iter().map(|(one, _)| without_errors(one.cells())).collect();
     let title = format!("Which recording of {}?", list.folder);
     let picker = RecordingPicker::new(title, headings, rows);
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(TerminalError)?;
@@ -193,7 +194,7 @@ pub fn pick(folder: &Path) -> Result<Option<PathBuf>, ReviewError> {
         event_loop::run(&mut shell, &mut station).await
     })?;
     Ok(match chosen {
-        Some(RecordingReply::Chosen(index)) => paths.get(index).cloned(),
+        Some(RecordingReply::Chosen(index)) => newest.into_iter().nth(index).map(|(_, path)| path),
         Some(RecordingReply::Leave) | None => None,
     })
 }

@@ -1,13 +1,13 @@
-//! The errors of a recording as raters see them: number, time and press.
+//! The errors of a recording as raters see them: number, time, press and reason.
 
 use serde::Serialize;
 
-use crate::TimelineEvent;
 use crate::follower::SessionFollower;
-use crate::history::wording;
+use crate::history::{error_reasons, wording};
 use crate::wizard_log::clock_at;
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::Agent;
+use tomcom_core::kitchen::{Agent, Kitchen};
+use tomcom_core::measures::JudgedPress;
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ListedError {
@@ -20,26 +20,28 @@ pub struct ListedError {
     pub button: String,
     /// Whether the press changed the kitchen.
     pub effective: bool,
+    /// What would have been right, for the screen: "order 1 needs tuna".
+    #[serde(skip)]
+    pub why: String,
+    /// What the places of the press held before it, for the screen: "cutting board raw salmon, human hand empty".
+    #[serde(skip)]
+    pub shown: String,
 }
 
 impl ListedError {
     /// Of a recording that was read to its end.
     pub fn all(follower: &SessionFollower) -> Vec<ListedError> {
-        let session = &follower.session;
-        let presses = session.timeline.iter().filter_map(|entry| match entry.what {
-            TimelineEvent::Press { agent: Agent::Human, button, no_effect, .. } => Some((button, no_effect.is_none())),
-            _ => None,
-        });
-        // The judged presses and the human's presses on the timeline are the same presses in the same order.
-        let errors = follower.judged.iter().zip(presses).filter(|(judged, _)| judged.verdict.error);
-        let listed =
-            |(index, (judged, (button, effective))): (usize, (&tomcom_core::measures::JudgedPress, _))| ListedError {
-                error: index as u64 + 1,
-                press: judged.seq,
-                time_s: clock_at(session, judged.time).as_secs_f64(),
-                button: wording::button(&session.kitchen, Agent::Human, button),
-                effective,
-            };
+        let (session, kitchen) = (&follower.session, &follower.session.kitchen);
+        let errors = follower.judged.iter().filter(|judged| judged.verdict.error);
+        let listed = |(index, judged): (usize, &JudgedPress)| ListedError {
+            error: index as u64 + 1,
+            press: judged.seq,
+            time_s: clock_at(session, judged.time).as_secs_f64(),
+            button: wording::button(kitchen, Agent::Human, judged.button),
+            effective: kitchen.no_effect(judged.before, Agent::Human, judged.button).is_none(),
+            why: error_reasons::why(kitchen, judged),
+            shown: shown(kitchen, judged),
+        };
         errors.enumerate().map(listed).collect()
     }
 
@@ -55,4 +57,11 @@ impl ListedError {
             false => format!("{} (no effect)", self.button),
         }
     }
+}
+
+/// Contents of the places that decide what the press does, as the display showed them before it.
+fn shown(kitchen: &Kitchen, press: &JudgedPress) -> String {
+    let places = kitchen.involved(Agent::Human, press.button);
+    let content = |place| format!("{} {}", kitchen.location(place).label(), kitchen.content_label(press.before, place));
+    places.into_iter().map(content).collect::<Vec<_>>().join(", ")
 }

@@ -37,6 +37,8 @@ pub struct PressVerdict {
     pub error: bool,
     /// Whether all costs to go on which the verdict rests are proven to be the least.
     pub is_proven: bool,
+    /// The human's press with the least regret; ties go to the layout's order. `None` if no press of the human helps.
+    pub best: Option<ButtonId>,
 }
 
 /// Judges presses of the human; stores when somebody else last changed each location.
@@ -93,10 +95,14 @@ impl PressJudge {
         };
         let regret = regret_to(after);
         let buttons = kitchen.button_ids(Agent::Human);
-        let least = buttons
-            .filter_map(|button| kitchen.press(before, &recipes, Agent::Human, button))
-            .map(&mut regret_to)
-            .fold(1, i32::min);
+        let (mut least, mut best) = (1, None);
+        for other in buttons {
+            let Some(state) = kitchen.press(before, &recipes, Agent::Human, other) else { continue };
+            let regret = regret_to(state);
+            if regret < least {
+                (least, best) = (regret, Some(other));
+            }
+        }
         let excess = regret - least;
         let race = self.is_race(now, button);
         let mut nearer = || {
@@ -107,7 +113,7 @@ impl PressJudge {
             })
         };
         let error = !race && excess >= 1 && !(excess <= PREPARATION_EXCESS && nearer());
-        PressVerdict { regret, excess, race, error, is_proven }
+        PressVerdict { regret, excess, race, error, is_proven, best }
     }
 
     /// Whether somebody else changed a place where this button acts within [`RACE_S`] before now.
@@ -133,6 +139,8 @@ pub struct JudgedPress {
     pub seq: u64,
     /// Session time of the press.
     pub time: SessionTime,
+    /// The button that the human pressed.
+    pub button: ButtonId,
     /// State of the kitchen before the press.
     pub before: State,
     /// The regret of the press, and whether it was an error.

@@ -63,7 +63,12 @@ impl Review {
     /// Moves the replay to the next or previous landmark of this kind, if there is one.
     fn look_for(&mut self, what: ReplayLandmark, forward: bool) {
         match self.film.landmark(what, forward) {
-            Some(position) => self.stand_at(position),
+            Some(found) => {
+                self.stand_at(found.position);
+                let told = self.film.told(what).map_or(String::new(), |told| format!(": {told}"));
+                let said = format!("{} {} of {}{told}", what.name(), found.number, found.of);
+                self.model.say(NoticeLevel::Done, said);
+            }
             None => {
                 let which = if forward { "later" } else { "earlier" };
                 self.model.say(NoticeLevel::Refused, format!("the recording has no {which} {}", what.name()));

@@ -1,7 +1,8 @@
 //! History of a session for console, replay, study and Rerun: the belief estimate over time, the comparison of wizard
-//! and assistants, and the wording of events. This module draws nothing and reads no files.
+//! and assistants, what orders need, the reasons of errors, and the wording of events. This module draws nothing and reads no files.
 
 pub mod belief_track;
 pub mod comparison;
-pub mod signal_judge;
+pub mod error_reasons;
+pub mod order_needs;
 pub mod wording;

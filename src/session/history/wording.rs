@@ -65,7 +65,7 @@ pub fn no_effect(kitchen: &Kitchen, state: State, id: ButtonId) -> Option<String
 }
 
 /// `content`: of the location that the reason is about.
-fn because(kitchen: &Kitchen, why: NoEffectReason, about: LocationId, content: &str) -> String {
+pub(super) fn because(kitchen: &Kitchen, why: NoEffectReason, about: LocationId, content: &str) -> String {
     let name = kitchen.location(about).label();
     match why {
         NoEffectReason::HandFull => "the hand is full".to_string(),

@@ -7,7 +7,7 @@ use tomcom_core::base::text::count;
 use tomcom_core::gaze::quality::{DroppedInputCounts, GazeFaultCounts};
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::gaze_samples::faults;
-use tomcom_session::settings::Condition;
+use tomcom_session::settings::{Condition, ParticipantKind, SessionSpec};
 use tomcom_session::study_arm::StudyArm;
 use tomcom_session::{Session, TrialPhase};
 
@@ -121,6 +121,9 @@ pub struct ListedRecording {
     pub condition: Option<Condition>,
     /// Study arm of the trial as it was carried out; null if the recording cannot be read.
     pub arm: Option<StudyArm>,
+    /// Absent if the recording cannot be read.
+    #[serde(flatten)]
+    pub kind: Option<TrialKind>,
     /// Time at which the recording began (UTC, RFC 3339); null for a simulated trial.
     pub date: Option<String>,
     pub trial_s: Option<f64>,
@@ -132,6 +135,34 @@ pub struct ListedRecording {
     pub reason: Option<String>,
 }
 
+/// What a recording is of, beside a trial of a person that counts in a study.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct TrialKind {
+    /// Whether the participant is simulated.
+    pub simulated: bool,
+    /// Whether the recording is a plan's tutorial or practice, which no analysis counts.
+    pub practice: bool,
+}
+
+impl TrialKind {
+    pub fn from_spec(spec: &SessionSpec) -> TrialKind {
+        TrialKind {
+            simulated: spec.participant.kind == ParticipantKind::Simulated,
+            practice: spec.step.as_ref().is_some_and(|step| step.period.is_none()),
+        }
+    }
+
+    /// "person", "practice", "simulated practice".
+    pub fn words(self) -> &'static str {
+        match (self.simulated, self.practice) {
+            (false, false) => "person",
+            (false, true) => "practice",
+            (true, false) => "simulated",
+            (true, true) => "simulated practice",
+        }
+    }
+}
+
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RecordingList {
     pub folder: String,
@@ -140,7 +171,8 @@ pub struct RecordingList {
 
 impl RecordingList {
     /// Column headings of the list, in the order of [`ListedRecording::cells`].
-    pub const HEADINGS: [&'static str; 7] = ["code", "condition", "date", "length", "errors", "state", "recording"];
+    pub const HEADINGS: [&'static str; 8] =
+        ["code", "condition", "kind", "date", "length", "errors", "state", "recording"];
 
     pub fn new(folder: String, mut recordings: Vec<ListedRecording>) -> RecordingList {
         let key = |one: &ListedRecording| (one.code.clone(), one.date.clone(), one.recording.clone());
@@ -149,9 +181,9 @@ impl RecordingList {
     }
 
     pub fn describe(&self) -> String {
-        let mut rows: Vec<[String; 7]> = vec![RecordingList::HEADINGS.map(str::to_string)];
+        let mut rows: Vec<[String; 8]> = vec![RecordingList::HEADINGS.map(str::to_string)];
         rows.extend(self.recordings.iter().map(ListedRecording::cells));
-        let widths: Vec<usize> = (0..7).map(|column| widest(&rows, column)).collect();
+        let widths: Vec<usize> = (0..8).map(|column| widest(&rows, column)).collect();
         let mut text = String::new();
         for (row, one) in rows.iter().zip(std::iter::once(None).chain(self.recordings.iter().map(Some))) {
             let cells = row.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}"));
@@ -163,17 +195,18 @@ impl RecordingList {
     }
 }
 
-fn widest(rows: &[[String; 7]], column: usize) -> usize {
+fn widest(rows: &[[String; 8]], column: usize) -> usize {
     rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0)
 }
 
 impl ListedRecording {
-    pub fn cells(&self) -> [String; 7] {
+    pub fn cells(&self) -> [String; 8] {
         let or_dash = |cell: Option<String>| cell.unwrap_or_else(|| "-".to_string());
         let minutes = |seconds: f64| format!("{}:{:02}", seconds as u64 / 60, seconds as u64 % 60);
         [
             or_dash(self.code.clone()),
             or_dash(self.arm.map(|arm| arm.title().to_string())),
+            or_dash(self.kind.map(|kind| kind.words().to_string())),
             or_dash(self.date.as_deref().map(|date| date.chars().take(16).collect::<String>().replace('T', " "))),
             or_dash(self.trial_s.map(minutes)),
             or_dash(self.errors.map(|errors| errors.to_string())),

@@ -6,7 +6,7 @@ mod matching;
 use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::{Agent, AspectId, DishId, Kitchen, LocationId, OrderContent, State};
+use tomcom_core::kitchen::{Agent, AspectId, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::{ErrorAttributor, ErrorCause, FalseBeliefTarget};
 use tomcom_core::measures::errors::{PressJudge, PressVerdict};
@@ -208,9 +208,11 @@ fn presses(text: &str) -> Vec<JudgedPress> {
             }
         };
         let (race, error) = (letter == 'r', cause.is_some());
-        let verdict = PressVerdict { regret: i32::from(error), excess: i32::from(error), race, error, is_proven: true };
+        let excess = i32::from(error);
+        let verdict = PressVerdict { regret: excess, excess, race, error, is_proven: true, best: None };
         let before = kitchen("sushi").empty_state();
-        JudgedPress { seq: index as u64, time: at(index as f64), before, verdict, belief_known: true, cause }
+        let (seq, time, button) = (index as u64, at(index as f64), ButtonId(0));
+        JudgedPress { seq, time, button, before, verdict, belief_known: true, cause }
     };
     text.chars().enumerate().map(press).collect()
 }
@@ -320,11 +322,11 @@ fn a_wizards_signals_are_held_against_what_was_believed_wrong() {
     let signals = [
         (4.0, vec![1], SignalVerdict::Needless),
         (12.5, vec![1], SignalVerdict::Hit { latency_s: 2.5, period: 0 }),
-        (14.0, vec![1], SignalVerdict::Again),
+        (14.0, vec![1], SignalVerdict::Repeated),
         (21.0, vec![2], SignalVerdict::Harmless),
         // An order with its recipe: the one that led to an error counts.
-        (22.0, vec![2, 1], SignalVerdict::Again),
-        (24.0, vec![5], SignalVerdict::WrongTarget),
+        (22.0, vec![2, 1], SignalVerdict::Repeated),
+        (24.0, vec![5], SignalVerdict::Wrong),
         // Right again since two presses; and since too long.
         (34.0, vec![1], SignalVerdict::Late),
         (40.0, vec![1], SignalVerdict::Needless),
@@ -344,8 +346,14 @@ fn a_wizards_signals_are_held_against_what_was_believed_wrong() {
     assert_eq!(counts, [2, 1, 1, 2, 1].map(Some));
     let named: u64 = counts.iter().flatten().sum::<u64>() + found.hits.unwrap_or(0);
     assert_eq!(named, found.signals, "every signal is one of these");
+    let words = [
+        "3 false beliefs with errors: 2 hit after 6.2 s in the median, 1 missed",
+        "other signals: 2 repeated, 1 late, 1 wrong, 2 needless, 1 harmless",
+    ];
+    assert_eq!(found.words(), Some(words.map(str::to_string)));
     // Of people nobody knows.
     let unknown = WizardMeasures::from_signals(&all, None);
+    assert_eq!(unknown.words(), None);
     assert_eq!((unknown.signals, unknown.hits, unknown.omissions), (9, None, None));
     // Two of three hit; three of nine wrong.
     let met = |hits: f64, wrong: f64| TrainingCriterion { hits, wrong }.is_met(&found);

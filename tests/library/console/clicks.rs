@@ -11,6 +11,7 @@ use tomcom::console::view::click_targets;
 use tomcom::console::view::regions::PanelAreas;
 use tomcom::console::{ConsoleCommand, ConsoleMessage, KeyBindings, KeyFileBindings, mouse, update};
 use tomcom_core::communication::offer::{OfferedAdvice, OfferedCommunication};
+use tomcom_session::replay::ReplayLandmark;
 
 use super::{SIZES, Stage, input, panels};
 use crate::support::*;
@@ -208,6 +209,24 @@ fn the_scrub_bar_and_the_timeline_seek_in_a_replay() {
         let right = if size.0 == 80 { size.0 - 2 } else { size.0 - 3 };
         let [then, now] = [right - 10, right].map(|column| seek(column, row - 2));
         assert!((now - then - 5.0).abs() < 0.6 && (now - 22.6).abs() < 0.6, "{then} {now}");
+    }
+}
+
+#[test]
+fn the_scrub_bar_marks_errors_signals_and_false_beliefs_with_their_keys() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.model.keys =
+        KeyBindings::replay(&stage.session.kitchen, &KeyFileBindings::default()).expect("the keys are free");
+    let marks = [(10.0, ReplayLandmark::Signal), (20.0, ReplayLandmark::FalseBelief), (30.0, ReplayLandmark::Error)];
+    let marks = marks.map(|(seconds, what)| (at(seconds), what)).into();
+    stage.model.playback = Some(Playback { length: at(40.0), marks, ..Playback::new("S001".to_string()) });
+    for size in SIZES {
+        stage.model.size = size;
+        let screen = stage.screen(size);
+        let bar = screen.lines().find(|line| line.contains(" recording ")).expect("the bar");
+        let bar = bar.split_once(" recording ").map_or("", |(_, bar)| bar);
+        let places = ["s", "b", "e"].map(|key| bar.find(key).expect("a mark"));
+        assert!(places.is_sorted(), "{bar}");
     }
 }
 

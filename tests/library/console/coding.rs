@@ -33,6 +33,8 @@ fn rated(party: CodingRaters, given: RaterCodes) -> Stage {
         time_s: 7.0 + 31.0 * index as f64,
         button: buttons[index % buttons.len()].to_string(),
         effective: index % 3 != 1,
+        why: "order 1 needs tuna".to_string(),
+        shown: "human hand empty".to_string(),
     };
     stage.model.coding = Some(RaterSession::new(party, (0..12).map(error).collect(), given));
     stage.model.playback = Some(Playback { event: 201, events: 1300, ..Playback::new("2026-03-14-P01-1".to_string()) });
@@ -66,6 +68,18 @@ fn codebook_and_errors_stand_beside_the_kitchen_at_three_sizes() {
         }
     }
     check_snapshot("console", "rater_120x40", stage.screen((120, 40)));
+}
+
+#[test]
+fn the_list_has_whole_words_and_says_what_was_needed_and_shown() {
+    let mut stage = rater(RaterCodes::default());
+    for size in SIZES {
+        stage.model.size = size;
+        stage.shows(size, &["assembly board", "cutting board (no effect)"]);
+    }
+    stage.shows((120, 40), &["take salmon: order 1 needs tuna"]);
+    stage.model.size = (200, 60);
+    stage.shows((200, 60), &["order 1 needs tuna", "before: human hand empty"]);
 }
 
 #[test]

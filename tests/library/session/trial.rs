@@ -1,10 +1,13 @@
 //! The trial's clock, pauses, orders and end; which presses are errors, and what orders took.
 
 use tomcom::run::recording_list::{RecordingListDetail, list};
+use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::errors::{PressJudge, PressVerdict};
 use tomcom_session::apply;
 use tomcom_session::engine::InputResult;
 use tomcom_session::follower::SessionFollower;
+use tomcom_session::history::error_reasons;
+use tomcom_session::history::order_needs::{ItemProgress, order_needs};
 use tomcom_study::analysis::trial_summary::{RegretSum, order_times};
 
 use super::probes::on_request;
@@ -181,7 +184,7 @@ fn presses_faster_than_the_sessions_pace_are_recorded_and_do_not_count() {
 
 /// The verdict on the human's last press of a list by both agents, one second apart but for the last one, that comes
 /// `after_s` after the one before it; orders of these dishes are present.
-fn verdict(dishes: &[&str], presses: &[(Agent, &str)], after_s: f64) -> PressVerdict {
+fn judged(dishes: &[&str], presses: &[(Agent, &str)], after_s: f64) -> JudgedPress {
     let kitchen = kitchen();
     let mut cost = CostToGo::new(kitchen.clone());
     let mut judge = PressJudge::new(kitchen.clone());
@@ -194,22 +197,72 @@ fn verdict(dishes: &[&str], presses: &[(Agent, &str)], after_s: f64) -> PressVer
     for (index, (agent, name)) in presses.iter().enumerate() {
         let button = kitchen.button_named(*agent, name).expect("a button");
         let is_last = index + 1 == presses.len();
-        let now = at(if is_last { index as f64 - 1.0 + after_s } else { index as f64 });
+        let time = at(if is_last { index as f64 - 1.0 + after_s } else { index as f64 });
         let press = kitchen.try_press(state, *agent, button);
         match agent {
-            Agent::Robot => judge.others_changed(now, press.before, press.after),
-            Agent::Human => last = Some(judge.human_pressed(&mut cost, now, &press)),
+            Agent::Robot => judge.others_changed(time, press.before, press.after),
+            Agent::Human => {
+                let (seq, before, verdict) = (index as u64, state, judge.human_pressed(&mut cost, time, &press));
+                last = Some(JudgedPress { seq, time, button, before, verdict, belief_known: false, cause: None });
+            }
         }
         state = press.after;
     }
     last.expect("a press of the human")
 }
 
+fn verdict(dishes: &[&str], presses: &[(Agent, &str)], after_s: f64) -> PressVerdict {
+    judged(dishes, presses, after_s).verdict
+}
+
+#[test]
+fn an_error_is_explained_by_what_the_orders_need() {
+    use Agent::{Human, Robot};
+    let check = |dishes: &[&str], presses: &[(Agent, &str)], why: &str| {
+        let press = judged(dishes, presses, 5.0);
+        assert!(press.verdict.error, "{presses:?} is no error: {:?}", press.verdict);
+        assert_eq!(error_reasons::why(&kitchen(), &press), why, "{presses:?}");
+    };
+    check(&["crab maki"], &[(Human, "take shrimp")], "order 1 needs crab");
+    check(&["crab maki"], &[(Human, "cut")], "the cutting board is empty");
+    let nori = [(Robot, "take nori"), (Robot, "assembly_board"), (Human, "take nori")];
+    check(&["crab maki"], &nori, "order 1 has nori already");
+    let rice = [(Human, "take rice"), (Human, "cooking_pot"), (Human, "cook"), (Human, "cooking_pot")];
+    let shaped = [rice.as_slice(), &[(Human, "shape")]].concat();
+    check(&["crab maki"], &shaped, "no order needs shaped rice");
+    let stacked = [rice.as_slice(), &[(Human, "assembly_board")]].concat();
+    check(&["tuna nigiri"], &stacked, "order 1 needs shaped rice, not cooked rice");
+    let trash = [rice.as_slice(), &[(Human, "trash")]].concat();
+    check(&["crab maki"], &trash, "order 1 needs cooked rice");
+}
+
+#[test]
+fn what_is_there_counts_for_one_order_and_as_far_as_it_is() {
+    let kitchen = kitchen();
+    let mut state = kitchen.empty_state();
+    for (order, dish) in kitchen.orders.iter().zip(["tuna nigiri", "tuna maki"]) {
+        state.set_order(*order, OrderContent::Dish(kitchen.dish_named(dish).expect("a dish")));
+    }
+    for (place, content) in [("plate", "nori"), ("counter", "tuna raw"), ("cooking_pot", "rice cooked")] {
+        let [place, content] =
+            [kitchen.location_named(place).map(|at| at.0), kitchen.content_named(content).map(|id| id.0)];
+        state.set_code(LocationId(place.expect("a place")), content.expect("a content"));
+    }
+    let found = order_needs(&kitchen, state);
+    let progress = |index: usize| found[index].items.iter().map(|needed| needed.progress).collect::<Vec<_>>();
+    let at = |name| kitchen.location_named(name).expect("a place");
+    use ItemProgress::{InWork, Missing, Ready, Stacked};
+    // In the order of the recipe file: rice, nori, tuna. Cooked rice is ready for the maki before it is in work for the nigiri.
+    assert_eq!(progress(0), [Missing, Stacked, InWork(at("counter"))]);
+    assert_eq!(progress(1), [Ready(at("cooking_pot")), Missing, Missing]);
+}
+
 #[test]
 fn errors_are_presses_that_lose_more_than_the_best_one() {
     use Agent::{Human, Robot};
     let good = verdict(&["crab maki"], &[(Human, "take crab")], 1.0);
-    assert_eq!(good, PressVerdict { regret: 0, excess: 0, race: false, error: false, is_proven: true });
+    let best = kitchen().button_named(Human, "take rice");
+    assert_eq!(good, PressVerdict { regret: 0, excess: 0, race: false, error: false, is_proven: true, best });
     // The wrong shellfish has to be thrown away.
     let wrong = verdict(&["crab maki"], &[(Human, "take shrimp")], 1.0);
     assert_eq!((wrong.excess, wrong.error), (2, true));

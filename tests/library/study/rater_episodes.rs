@@ -71,7 +71,7 @@ impl Log {
         let press = self.kitchen.try_press(self.state, Agent::Human, button);
         let (seq, time, before) = (self.trace.events.len() as u64, self.now(), self.state);
         let verdict = self.judge.human_pressed(&mut self.cost, time, &press);
-        self.judged.push(JudgedPress { seq, time, before, verdict, belief_known: false, cause: None });
+        self.judged.push(JudgedPress { seq, time, button, before, verdict, belief_known: false, cause: None });
         if let Some(about) = about {
             assert!(verdict.error, "{line} is no error: {verdict:?}");
             let target = ErrorCauseCode::Belief(about.to_string()).target(&self.kitchen, before);

@@ -27,6 +27,7 @@ use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::mind::RecordedBelief;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::history::belief_track::BeliefSnapshot;
+use tomcom_session::history::error_reasons::ExplainedError;
 use tomcom_session::{Event, Session, TimestampedEvent};
 
 const SIZES: [(u16, u16); 2] = [(80, 24), (120, 40)];
@@ -160,8 +161,7 @@ impl Stage {
         let belief = self.engine.belief();
         self.model.belief.note(BeliefSnapshot::new(&session.kitchen, session.state, belief, last.time, by_gaze));
         let judged = self.engine.judged();
-        let errors = judged[self.judged..].iter().filter(|press| press.verdict.error).map(|press| press.time);
-        self.model.errors.extend(errors);
+        self.model.errors.extend(ExplainedError::among(&session.kitchen, &judged[self.judged..]));
         self.judged = judged.len();
         let best = session.advice.as_ref().and_then(|advice| advice.best.clone());
         if best != self.best.0 {

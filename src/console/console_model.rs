@@ -25,6 +25,7 @@ use tomcom_core::kitchen::{Agent, AspectId};
 use tomcom_core::measures::wizard_performance::WizardMeasures;
 use tomcom_session::history::belief_track::BeliefHistory;
 use tomcom_session::history::comparison::{SenderComparison, UnmatchedCommunication};
+use tomcom_session::history::error_reasons::ExplainedError;
 use tomcom_session::preflight_checks::RejectedGaze;
 use tomcom_session::replay::ReplayLandmark;
 use tomcom_session::{Event, TimelineEntry, TimelineEvent};
@@ -121,7 +122,10 @@ pub struct ConsoleModel {
     pub lsl: Option<LslStatus>,
     /// Free disk space of the recording's folder in bytes; `None` if unknown.
     pub free_bytes: Option<u64>,
+    /// Panel that is shown alone at full size.
     pub alone: Option<Panel>,
+    /// Panel that the keys of panels refer to: its frame is stronger, the arrow keys scroll it.
+    pub focus: Option<Panel>,
     /// First visible column of the help, or first visible line of a training report.
     pub help_from: usize,
     /// Scroll position of the list of events: number of newer entries that are skipped.
@@ -144,8 +148,8 @@ pub struct ConsoleModel {
     /// What the session reads from its gaze file; `None` for other gaze sources.
     pub recorded_gaze: Option<RecordedGazeSummary>,
     pub display: Option<ParticipantDisplayHealth>,
-    /// Session times of the human's errors, in ascending order.
-    pub errors: Vec<SessionTime>,
+    /// The human's errors in the order of time, with reasons that were found once, when the press was judged.
+    pub errors: Vec<ExplainedError>,
     /// Number of the human's presses whose judgement rests on a cost to go that is not proven.
     pub unproven: u64,
     /// The wizard's signals as the study judges them, once the trial is over.
@@ -193,6 +197,7 @@ impl ConsoleModel {
             lsl: None,
             free_bytes: None,
             alone: None,
+            focus: None,
             help_from: 0,
             events_back: 0,
             timeline_back_s: 0,
@@ -300,9 +305,11 @@ impl ConsoleModel {
         self.alone = aspect.map(|_| Panel::Belief);
     }
 
-    pub fn is_error(&self, entry: &TimelineEntry) -> bool {
-        matches!(entry.what, TimelineEvent::Press { agent: Agent::Human, .. })
-            && self.errors.binary_search(&entry.time).is_ok()
+    /// The error that this entry of the timeline is, if it is one.
+    pub fn error(&self, entry: &TimelineEntry) -> Option<&ExplainedError> {
+        let is_press = matches!(entry.what, TimelineEvent::Press { agent: Agent::Human, .. });
+        let found = self.errors.binary_search_by_key(&entry.time, |error| error.time);
+        found.ok().filter(|_| is_press).map(|index| &self.errors[index])
     }
 }
 

@@ -61,9 +61,11 @@ pub enum ManualAction {
 /// Action of a key that changes which panels or which time the screen shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ViewAction {
-    /// Show the next panel at full size; after the last one, all panels.
+    /// Give the focus to the next panel, at full size if one is shown so.
     Next,
     Last,
+    /// Show the panel with the focus at full size, or all panels again.
+    Open,
     All,
     Back,
     Forward,

@@ -43,63 +43,78 @@ pub struct KitchenMap {
 #[derive(Clone, Copy, Debug)]
 struct Bounds([[f64; 2]; 2]);
 
-const MAX_ORDER: u16 = 44;
+/// Areas of the screen that together correspond to the wall display: the lines of the orders, and the map of the places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct KitchenMapAreas {
+    pub orders: Rect,
+    pub places: Rect,
+}
+
+/// Height of the map of the places: at least, and where there is room for a gap below each place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct KitchenMapRows {
+    pub least: u16,
+    pub most: u16,
+}
+
+/// Lines of a place: its name, its content, and news or a false belief.
+const PLACE_LINES: u16 = 3;
 /// Columns beside the name of the participant's hand: for rule and gap, and for a key with its space where the hand has
 /// a key.
 const OWN_HAND: u16 = 2;
 const KEYED_OWN_HAND: u16 = 4;
 
 impl KitchenMap {
-    /// Computes the kitchen map of a kitchen in these terminal cells; `with_keys` reserves room for the keys of the
-    /// human's storage.
-    pub fn new(kitchen: &Kitchen, cells: Rect, with_keys: bool) -> KitchenMap {
-        KitchenMap::with_room(kitchen, cells, with_keys, OWN_HAND)
+    /// Computes the kitchen map of a kitchen in these areas; `with_keys` reserves room for the keys of the human's
+    /// storage.
+    pub fn new(kitchen: &Kitchen, areas: KitchenMapAreas, with_keys: bool) -> KitchenMap {
+        KitchenMap::with_room(kitchen, areas, with_keys, OWN_HAND)
     }
 
-    /// The kitchen map of a session in these terminal cells; `is_coded` says that a rater codes the errors of the
-    /// session.
-    pub fn for_session(session: &Session, is_coded: bool, cells: Rect) -> KitchenMap {
+    /// The kitchen map of a session in these areas; `is_coded` says that a rater codes the errors of the session.
+    pub fn for_session(session: &Session, is_coded: bool, areas: KitchenMapAreas) -> KitchenMap {
         match is_coded {
-            true => KitchenMap::for_rater(&session.kitchen, cells),
+            // For a rater, the participant's hand has a key, too.
+            true => KitchenMap::with_room(&session.kitchen, areas, false, KEYED_OWN_HAND),
             false => {
                 let with_keys = session.spec.participant.kind == ParticipantKind::Keyboard;
-                KitchenMap::new(&session.kitchen, cells, with_keys)
+                KitchenMap::new(&session.kitchen, areas, with_keys)
             }
         }
     }
 
-    /// The kitchen map for a rater, for whom the participant's hand has a key, too.
-    fn for_rater(kitchen: &Kitchen, cells: Rect) -> KitchenMap {
-        KitchenMap::with_room(kitchen, cells, false, KEYED_OWN_HAND)
+    /// Heights of a kitchen's map of places that leave no void: the line of the zones, then three lines for each place.
+    pub fn rows(kitchen: &Kitchen) -> KitchenMapRows {
+        let items = items(kitchen, false, OWN_HAND);
+        let body: Vec<&Item> = items.iter().filter(|item| !is_order(kitchen, item.thing)).collect();
+        let columns = clusters(&body, 0);
+        let of = |column: &Vec<&Item>, is_store: bool| {
+            column.iter().filter(|item| matches!(item.thing, KitchenMapElement::Storage(_)) == is_store).count() as u16
+        };
+        let tallest = |is_store| columns.iter().map(|column| of(column, is_store)).max().unwrap_or(0);
+        let is_place = |item: &&Item| matches!(item.thing, KitchenMapElement::Location(_));
+        let rows = clusters(&body.iter().copied().filter(is_place).collect::<Vec<_>>(), 1).len() as u16;
+        let (places, stores) = (tallest(false).max(rows), tallest(true));
+        KitchenMapRows {
+            least: 1 + (PLACE_LINES * places).max(stores),
+            most: 1 + ((PLACE_LINES + 1) * places).max(stores),
+        }
     }
 
-    fn with_room(kitchen: &Kitchen, cells: Rect, with_keys: bool, own_hand: u16) -> KitchenMap {
+    fn with_room(kitchen: &Kitchen, areas: KitchenMapAreas, with_keys: bool, own_hand: u16) -> KitchenMap {
         let items = items(kitchen, with_keys, own_hand);
         let (strip, body): (Vec<&Item>, Vec<&Item>) = items.iter().partition(|item| is_order(kitchen, item.thing));
         let lowest = |items: &[&Item]| items.iter().map(|item| item.area.y + item.area.h).fold(0.0, f64::max);
         let highest = |items: &[&Item]| items.iter().map(|item| item.area.y).fold(1.0, f64::min);
-        let above = lowest(&strip) <= highest(&body);
-        let below = lowest(&body) <= highest(&strip);
-        if strip.is_empty() || body.is_empty() || !(above || below) {
-            let all: Vec<&Item> = items.iter().collect();
-            return KitchenMap::columns(&all, cells, [0.0, 1.0]);
-        }
-        // An order takes one line on small screens, else separate lines for name, dish and recipe.
-        let strip_rows = if cells.height >= 18 { 4 } else { 1 };
-        let (strip_cells, body_cells) = match above {
-            true => top(cells, strip_rows),
-            false => {
-                let (body, strip) = top(cells, cells.height.saturating_sub(strip_rows));
-                (strip, body)
-            }
+        let cut = (lowest(&strip) + highest(&body)) / 2.0;
+        // Where the wall display has the orders between or below the places, the regions overlap.
+        let (strip_y, body_y) = match lowest(&strip) <= highest(&body) {
+            true => ([0.0, cut], [cut, 1.0]),
+            false => ([0.0, 1.0], [0.0, 1.0]),
         };
-        let cut = match above {
-            true => (lowest(&strip) + highest(&body)) / 2.0,
-            false => (lowest(&body) + highest(&strip)) / 2.0,
-        };
-        let (strip_y, body_y) = if above { ([0.0, cut], [cut, 1.0]) } else { ([cut, 1.0], [0.0, cut]) };
-        let mut plan = KitchenMap::columns(&body, body_cells, body_y);
-        plan.spots.extend(row_of_orders(&strip, strip_cells, strip_y));
+        let mut plan = KitchenMap::columns(&body, areas.places, body_y);
+        plan.spots.extend(lines_of_orders(&strip, areas.orders, strip_y));
+        plan.spots = cover(plan.spots);
         plan
     }
 
@@ -139,7 +154,7 @@ impl KitchenMap {
                 _ => zones.push(AgentZone { owner, cells: Rect { x: slot.x, width, ..line } }),
             }
         }
-        KitchenMap { spots: cover(spots), zones }
+        KitchenMap { spots, zones }
     }
 
     /// The point of the wall display under the centre of a terminal cell, as fractions of width and height;
@@ -225,17 +240,15 @@ fn share(cells: Rect, count: usize, index: usize) -> Rect {
 fn spot(item: &Item, region: Rect, display: Bounds) -> KitchenMapBox {
     let cells = match item.thing {
         KitchenMapElement::Location(_) => {
-            // Low boxes leave an empty row between them; in a tall region, the boxes grow.
+            // Boxes leave an empty row between them where there is one; in a tall region, they grow.
             let height = match region.height {
-                rows @ 0..=4 => rows.min(3),
-                rows => 4 + (rows / 10).min(2),
+                rows @ 0..=4 => rows.min(PLACE_LINES),
+                rows => (rows - 1).min(6),
             };
             let width = region.width.saturating_sub(u16::from(region.width > MIN_CARD));
-            Rect { y: region.y + (region.height - height) / 2, width, height, ..region }
+            Rect { width, height, ..region }
         }
-        KitchenMapElement::Storage(_) => {
-            Rect { y: region.y + region.height / 2, height: region.height.min(1), ..region }
-        }
+        KitchenMapElement::Storage(_) => Rect { height: region.height.min(1), ..region },
     };
     KitchenMapBox { thing: item.thing, cells, area: item.area, display, screen: bounds(region) }
 }
@@ -244,20 +257,17 @@ fn bounds(cells: Rect) -> Bounds {
     Bounds([[cells.x, cells.right()].map(f64::from), [cells.y, cells.bottom()].map(f64::from)])
 }
 
-fn row_of_orders(items: &[&Item], cells: Rect, display_y: [f64; 2]) -> Vec<KitchenMapBox> {
+/// The orders as lines one below another, each as wide as the area.
+fn lines_of_orders(items: &[&Item], cells: Rect, display_y: [f64; 2]) -> Vec<KitchenMapBox> {
     let groups: Vec<Vec<&Item>> = {
         let mut sorted = items.to_vec();
         sorted.sort_by(|a, b| a.area.x.total_cmp(&b.area.x));
         sorted.into_iter().map(|item| vec![item]).collect()
     };
-    let edge = |index: usize| cells.x + (usize::from(cells.width) * index / groups.len().max(1)) as u16;
     let place = |(index, group): (usize, &Vec<&Item>)| {
-        let region = Rect { x: edge(index), width: edge(index + 1) - edge(index), ..cells };
-        let width = region.width.saturating_sub(2).min(MAX_ORDER);
-        let height = region.height.min(3);
-        let cells = Rect { x: region.x + (region.width - width) / 2, width, height, ..region };
+        let region = share(cells, groups.len(), index);
         let display = Bounds([ends(&groups, index, 0, [0.0, 1.0]), display_y]);
-        KitchenMapBox { thing: group[0].thing, cells, area: group[0].area, display, screen: bounds(region) }
+        KitchenMapBox { thing: group[0].thing, cells: region, area: group[0].area, display, screen: bounds(region) }
     };
     groups.iter().enumerate().map(place).collect()
 }

@@ -10,7 +10,7 @@ use super::console_model::{ConsoleCommand, ConsoleModel, Dialog, NoticeLevel, Re
 use super::form::sheet;
 use super::key_action::{KeyAction, KeyLayer, RaterAction};
 use super::key_press::{ANSWER_S, KeyPressKind, press};
-use super::kitchen_map::{KitchenMap, KitchenMapElement};
+use super::kitchen_map::{KitchenMap, KitchenMapAreas, KitchenMapElement};
 use super::panels::{self, Panel};
 use super::view::click_targets;
 use super::view::regions::PanelAreas;
@@ -109,7 +109,8 @@ fn choose(model: &mut ConsoleModel, session: &Session, row: usize) -> Option<Con
 /// Handles a click on the panels outside all click targets.
 fn look(model: &mut ConsoleModel, session: &Session, cell: (u16, u16)) {
     let regions = PanelAreas::showing(model.size, session, model);
-    if regions.kitchen_inside().contains(cell.into()) {
+    let KitchenMapAreas { orders, places } = regions.kitchen_inside();
+    if orders.contains(cell.into()) || places.contains(cell.into()) {
         let plan = map(model, session, &regions);
         let thing = plan.spots.iter().find(|spot| spot.cells.contains(cell.into())).map(|spot| spot.thing);
         if let Some(KitchenMapElement::Location(location)) = thing {
@@ -118,7 +119,7 @@ fn look(model: &mut ConsoleModel, session: &Session, cell: (u16, u16)) {
     }
     match (model.alone, panel_at(&regions, cell)) {
         (Some(_), _) => model.focus_belief(None),
-        (None, panel) => model.alone = panel,
+        (None, panel) => (model.alone, model.focus) = (panel, panel),
     }
 }
 

@@ -1,8 +1,9 @@
-//! Panels of the console: which is shown alone at full size, scrolling back in time, and what the log records of them.
+//! Panels of the console: which has the focus, which is shown alone at full size, scrolling back in time, and what the log records of them.
 //! Neither affects the participant.
 
+use super::actions::differ;
 use super::beliefs::visibility;
-use super::console_model::{ConsoleModel, Dialog};
+use super::console_model::{ComparisonAction, ConsoleModel, Dialog};
 use super::form::sheet;
 use super::key_action::ViewAction;
 use super::lists::PickerKind;
@@ -17,27 +18,59 @@ const STEP: (u32, usize) = (5, 1);
 
 /// Carries out a key that changes which panels or which time the screen shows.
 pub fn look(model: &mut ConsoleModel, session: &Session, look: ViewAction) {
-    let visibility = visibility(session, model);
-    let may_be_seen = |panel: &Panel| panel.may_be_seen(visibility, model.comparison.is_some());
-    let seen: Vec<Panel> = Panel::ALL.into_iter().filter(may_be_seen).collect();
-    let at = model.alone.and_then(|alone| seen.iter().position(|panel| *panel == alone));
     match look {
         ViewAction::All => {
-            (model.alone, model.events_back, model.timeline_back_s) = (None, 0, 0);
+            (model.alone, model.focus, model.events_back, model.timeline_back_s) = (None, None, 0, 0);
             model.belief_focus = None;
             if let Some(coding) = &mut model.coding {
                 coding.chosen = None;
             }
         }
-        ViewAction::Next => model.alone = seen.get(at.map_or(0, |at| at + 1)).copied(),
-        ViewAction::Last => {
-            let before = at.map_or(Some(seen.len() - 1), |at| at.checked_sub(1));
-            model.alone = before.and_then(|before| seen.get(before)).copied();
+        ViewAction::Next => step(model, session, true),
+        ViewAction::Last => step(model, session, false),
+        ViewAction::Open if opens_difference(model) => differ(model, session, ComparisonAction::Open),
+        ViewAction::Open => {
+            model.alone = match model.alone {
+                Some(_) => None,
+                None => model.focus.or(focusable(model, session).first().copied()),
+            };
+            model.focus = model.alone.or(model.focus);
         }
-        ViewAction::Back => scroll(model, session, model.alone, 1),
-        ViewAction::Forward => scroll(model, session, model.alone, -1),
+        ViewAction::Back => scroll(model, session, model.alone.or(model.focus), 1),
+        ViewAction::Forward => scroll(model, session, model.alone.or(model.focus), -1),
         ViewAction::Earlier => scroll(model, session, Some(Panel::Timeline), 1),
         ViewAction::Later => scroll(model, session, Some(Panel::Timeline), -1),
+    }
+}
+
+/// Whether the key that opens a panel opens the selected difference of a comparison: while no other panel has the focus.
+pub(super) fn opens_difference(model: &ConsoleModel) -> bool {
+    model.comparison.is_some() && matches!((model.alone, model.focus), (Some(Panel::Comparison), _) | (None, None))
+}
+
+/// The panels that can get the focus: those on the screen or, while one is shown alone, all that may be seen.
+fn focusable(model: &ConsoleModel, session: &Session) -> Vec<Panel> {
+    let visibility = visibility(session, model);
+    let regions = PanelAreas::showing(model.size, session, model);
+    let is_there = |panel: &Panel| model.alone.is_some() || regions.panel_area(*panel).area() > 0;
+    let may_be_seen = |panel: &Panel| panel.may_be_seen(visibility, model.comparison.is_some());
+    Panel::ALL.into_iter().filter(may_be_seen).filter(is_there).collect()
+}
+
+/// Gives the focus to the next or the previous panel. At full size that panel is shown instead; after the last one, all
+/// panels are.
+fn step(model: &mut ConsoleModel, session: &Session, is_forward: bool) {
+    let panels = focusable(model, session);
+    let at = model.alone.or(model.focus).and_then(|focus| panels.iter().position(|panel| *panel == focus));
+    let to = match (at, is_forward) {
+        (None, true) => Some(0),
+        (None, false) => panels.len().checked_sub(1),
+        (Some(at), true) => Some(at + 1),
+        (Some(at), false) => at.checked_sub(1),
+    };
+    model.focus = to.and_then(|to| panels.get(to)).copied();
+    if model.alone.is_some() {
+        model.alone = model.focus;
     }
 }
 
@@ -55,7 +88,7 @@ pub(super) fn scroll(model: &mut ConsoleModel, session: &Session, panel: Option<
         let back_s = i64::from(model.timeline_back_s) + steps * i64::from(STEP.0);
         let most_s = model.now.secs_since(session.trial_start).max(0.0) as i64;
         model.timeline_back_s = back_s.clamp(0, most_s) as u32;
-    } else if matches!(model.alone, None | Some(Panel::Events)) {
+    } else if matches!(model.alone, None | Some(Panel::Events | Panel::Presses)) {
         let back = model.events_back as i64 + steps * STEP.1 as i64;
         model.events_back = back.clamp(0, session.timeline.len().saturating_sub(1) as i64) as usize;
     }
@@ -64,8 +97,11 @@ pub(super) fn scroll(model: &mut ConsoleModel, session: &Session, panel: Option<
 /// A panel of the console that can be shown alone at full size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Panel {
+    Orders,
     Kitchen,
     Belief,
+    /// The last presses, with the reasons of errors.
+    Presses,
     Recommendation,
     /// Map of the places where the participant looked lately; shown at full size only.
     GazeMap,
@@ -76,10 +112,12 @@ pub enum Panel {
 
 impl Panel {
     /// All panels, in the order in which the keys go through them.
-    pub(super) const ALL: [Panel; 7] = [
+    pub(super) const ALL: [Panel; 9] = [
         Panel::Comparison,
+        Panel::Orders,
         Panel::Kitchen,
         Panel::Belief,
+        Panel::Presses,
         Panel::Recommendation,
         Panel::GazeMap,
         Panel::Events,

@@ -7,6 +7,7 @@ use super::form::sheet;
 use super::interventions::{can_redo, skippable, types_notes};
 use super::key_action::{KeyAction, KeyBinding, ManualAction, RaterAction, ViewAction};
 use super::key_press::is_right_after_list;
+use super::panels::opens_difference;
 use super::preflight;
 use tomcom_core::communication::Sender;
 use tomcom_session::admit::admit;
@@ -102,12 +103,16 @@ fn does(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {
         KeyAction::ResumeRobot => admits(Event::RobotResumed),
         KeyAction::Manual(action) => intervenes(session, *action),
         KeyAction::Move(to) => model.playback.as_ref().is_some_and(|playback| moves(playback, *to)),
-        KeyAction::Look(ViewAction::All) => model.alone.is_some() || model.events_back > 0 || model.timeline_back_s > 0,
+        KeyAction::Look(ViewAction::All) => {
+            model.alone.is_some() || model.focus.is_some() || model.events_back > 0 || model.timeline_back_s > 0
+        }
         KeyAction::Belief => {
             visibility(session, model) >= WizardVisibility::Belief && !beliefs(session, model).is_empty()
         }
         KeyAction::Differ(step) => differs(model, *step),
         KeyAction::Rate(rate) => rates(model, *rate),
+        KeyAction::Look(ViewAction::Open) if opens_difference(model) => differs(model, ComparisonAction::Open),
+        KeyAction::Look(ViewAction::Open) => model.focus.is_some(),
         KeyAction::SwitchLayer | KeyAction::Look(_) | KeyAction::Help | KeyAction::Palette | KeyAction::Quit => true,
     }
 }

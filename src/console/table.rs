@@ -152,7 +152,7 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
         Some("type note"),
     )));
     lines.extend(buttons(kitchen));
-    lines.extend(looks(&[KeyChord::ctrl('w')]));
+    lines.extend(looks());
     lines.extend(times());
     lines.extend(differences());
     lines.extend([
@@ -212,7 +212,7 @@ pub fn replay() -> Vec<KeyBinding> {
         palette(),
         line("help", &[KeyChord::char('?')], KeyAction::Help, CONSOLE, "show this help", Some("help")),
     ];
-    lines.extend(looks(&[KeyChord::plain(Tab), KeyChord::ctrl('w')]));
+    lines.extend(looks());
     lines.extend(differences());
     lines.extend(codes());
     lines.extend(moves.map(|(name, keys, to, help, footer)| of_move(name, &keys, to, help, footer)));
@@ -282,18 +282,11 @@ pub fn causes(kitchen: &Kitchen, marks: &[Option<KeyChord>]) -> Vec<KeyBinding> 
 }
 
 /// Key bindings of the differences between wizard and assistant, active only in a comparison.
-fn differences() -> [KeyBinding; 3] {
+fn differences() -> [KeyBinding; 2] {
     let differ = |name, key, step, help, footer| {
         line(name, &[KeyChord::ctrl(key)], KeyAction::Differ(step), COMPARISON, help, footer)
     };
     [
-        differ(
-            "open_difference",
-            'o',
-            ComparisonAction::Open,
-            "show what wizard and assistant knew then",
-            Some("difference"),
-        ),
         differ("next_difference", 'g', ComparisonAction::Next, "select the next difference of signals", Some("next")),
         differ(
             "last_difference",
@@ -306,12 +299,20 @@ fn differences() -> [KeyBinding; 3] {
 }
 
 /// Key bindings that change which panels the screen shows.
-fn looks(next: &[KeyChord]) -> [KeyBinding; 5] {
+fn looks() -> [KeyBinding; 6] {
     let look = |name, code, look, help, footer| line(name, &plain(code), KeyAction::Look(look), CONSOLE, help, footer);
-    let panels = "show the next panel at full size";
+    let of_control =
+        |name, key, at, help, footer| line(name, &[KeyChord::ctrl(key)], KeyAction::Look(at), CONSOLE, help, footer);
     [
-        line("next_panel", next, KeyAction::Look(ViewAction::Next), CONSOLE, panels, Some("panels")),
-        look("last_panel", BackTab, ViewAction::Last, "show the previous panel at full size", None),
+        of_control("next_panel", 'w', ViewAction::Next, "go to the next panel", Some("panels")),
+        look("last_panel", BackTab, ViewAction::Last, "go to the previous panel", None),
+        of_control(
+            "open_panel",
+            'o',
+            ViewAction::Open,
+            "show the panel at full size; in a comparison, the selected difference",
+            Some("full size"),
+        ),
         look("all_panels", Esc, ViewAction::All, "show all panels, at the present time", Some("all panels")),
         look("back", Up, ViewAction::Back, "scroll events or timeline back", None),
         look("forward", Down, ViewAction::Forward, "scroll events or timeline forward again", None),

@@ -340,7 +340,8 @@ impl ConsoleShell for Review {
         self.dirty = false;
         self.tick();
         self.model.now = self.now;
-        self.model.errors.clone_from(&self.film.errors);
+        let known = self.model.errors.len();
+        self.model.errors.extend_from_slice(&self.film.errors[known..]);
         self.model.belief.catch_up(&self.film.beliefs);
         let (length, events) = self.film.length();
         let (event, cut) = (self.film.position, self.film.is_cut());

@@ -9,6 +9,7 @@ use std::path::Path;
 
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::files::file_error::{FileError, FileResult};
+use tomcom_session::follower::SessionFollower;
 use tomcom_session::history::belief_track::{self, BeliefHistory, BeliefSnapshot};
 use tomcom_session::history::error_reasons::ExplainedError;
 use tomcom_session::history::wording;
@@ -91,23 +92,12 @@ struct Snapshots {
     timeline: Vec<TimelineEntry>,
 }
 
-/// A landmark to which a replay goes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FoundLandmark {
-    /// Position after all events at the landmark's time.
-    pub position: usize,
-    /// Number of the landmark among those of its kind, from 1.
-    pub number: usize,
-    /// Number of landmarks of its kind.
-    pub of: usize,
-}
-
 /// A recording that can be shown at any position.
 #[derive(Debug)]
 pub struct SeekableReplay {
     pub(super) replay: RecordingReplay,
-    /// Session times of the human's errors.
-    pub errors: Vec<SessionTime>,
+    /// The human's errors in the order of time.
+    pub errors: Vec<ExplainedError>,
     judged: usize,
     /// History of the belief estimate over the recording.
     pub beliefs: BeliefHistory,
@@ -197,9 +187,8 @@ impl SeekableReplay {
     pub fn read_while(&mut self, goes_on: impl Fn() -> bool) -> FileResult<bool> {
         let before = self.read_events();
         while goes_on() && self.read_event()? {}
-        let judged = &self.replay.follower.judged;
-        let new = judged[self.judged..].iter().filter(|press| press.verdict.error).map(|press| press.time);
-        self.errors.extend(new);
+        let SessionFollower { judged, session, .. } = &self.replay.follower;
+        self.errors.extend(ExplainedError::among(&session.kitchen, &judged[self.judged..]));
         self.judged = judged.len();
         Ok(self.read_events() > before)
     }
@@ -372,7 +361,7 @@ impl SeekableReplay {
     /// Times of the landmarks of this kind, as far as the recording was read.
     pub fn landmarks(&self, what: ReplayLandmark) -> Vec<SessionTime> {
         match what {
-            ReplayLandmark::Error => self.errors.clone(),
+            ReplayLandmark::Error => self.errors.iter().map(|error| error.time).collect(),
             ReplayLandmark::FalseBelief => self.beliefs.newly_false().collect(),
             ReplayLandmark::Signal | ReplayLandmark::Marker => {
                 self.steps.iter().filter(|step| step.landmark == Some(what)).map(|step| step.time).collect()
@@ -380,25 +369,31 @@ impl SeekableReplay {
         }
     }
 
-    /// The next or previous landmark of this kind.
-    pub fn landmark(&mut self, what: ReplayLandmark, forward: bool) -> Option<FoundLandmark> {
+    /// Position after all events at the time of the next or previous landmark of this kind.
+    pub fn landmark(&mut self, what: ReplayLandmark, forward: bool) -> Option<usize> {
         let (now, times) = (self.time(), self.landmarks(what));
-        let index = match forward {
-            true => times.iter().position(|&time| time > now),
-            false => times.iter().rposition(|&time| time < now),
-        }?;
-        Some(FoundLandmark { position: self.until(times[index]), number: index + 1, of: times.len() })
+        let found = match forward {
+            true => times.into_iter().find(|&time| time > now),
+            false => times.into_iter().rev().find(|&time| time < now),
+        };
+        found.map(|time| self.until(time))
     }
 
-    /// What the landmark of this kind is at which the replay stands, in words.
-    pub fn told(&self, what: ReplayLandmark) -> Option<String> {
+    /// The landmark of this kind at which the replay stands: "error 5 of 17: take salmon: order 1 needs tuna".
+    pub fn named(&self, what: ReplayLandmark) -> Option<String> {
+        let times = self.landmarks(what);
+        let index = times.iter().position(|&time| time == self.time())?;
+        Some(format!("{} {} of {}: {}", what.name(), index + 1, times.len(), self.told(what)?))
+    }
+
+    /// What the landmark of this kind is at which the replay stands.
+    fn told(&self, what: ReplayLandmark) -> Option<String> {
         let (session, now) = (&self.session, self.time());
         let entries = || session.timeline.iter().rev().take_while(|entry| entry.time == now).map(|entry| &entry.what);
         match what {
             ReplayLandmark::Error => {
-                let follower = &self.replay.follower;
-                let mut errors = ExplainedError::among(&session.kitchen, &follower.judged);
-                errors.find(|error| error.time == now).map(|error| format!("{}: {}", error.press, error.why))
+                let error = self.errors.iter().find(|error| error.time == now)?;
+                Some(format!("{}: {}", error.press, error.why))
             }
             ReplayLandmark::Signal => entries().find_map(|entry| match entry {
                 TimelineEvent::Signal { by, signal } => {

@@ -313,6 +313,8 @@ pub struct RobotStatus {
     pub driven_to: Option<ButtonId>,
     /// Why the robot is idle, and the human's buttons for a press of one of which it waits.
     pub idle: Option<(IdleReason, Vec<ButtonId>)>,
+    /// Why a press that was still useful was given up last.
+    pub gave_up: Option<AbortReason>,
     pub arm: ArmStatus,
 }
 
@@ -345,6 +347,9 @@ impl RobotStatus {
 
     pub(crate) fn gives_up(&mut self, reason: AbortReason) {
         self.intention = None;
+        if !matches!(reason, AbortReason::NoLongerUseful | AbortReason::Stopped | AbortReason::Driven) {
+            self.gave_up = Some(reason);
+        }
         // If the wizard chose another press for the robot, that press is still pending.
         self.driven_to = self.driven_to.filter(|_| reason == AbortReason::Driven);
     }
@@ -353,6 +358,7 @@ impl RobotStatus {
         self.intention = None;
         self.driven_to = None;
         self.idle = None;
+        self.gave_up = None;
     }
 }
 

@@ -265,7 +265,7 @@ def has_descriptors_left(tomcom, folder):
             tracker = socket.create_connection(("127.0.0.1", GAZE))
             for _ in range(50):
                 send(tracker, 2)
-            console.wait_for(r"gaze +\d+ Hz|◉")
+            console.wait_for(r"gaze +\d+ Hz")
             # While they come and go: the first line is due after ten seconds.
             time.sleep(12)
             send(tracker, 10)
@@ -303,7 +303,7 @@ def cannot_stall_with_blanks(tomcom, folder):
         used_s, took_s = cpu_s(console.process.pid) - used_s, time.monotonic() - began
         tracker = socket.create_connection(("127.0.0.1", GAZE))
         send(tracker, 100)
-        console.wait_for(r"gaze +\d+ Hz|◉")
+        console.wait_for(r"gaze +\d+ Hz")
         console.quit()
     assert used_s < 0.5 * took_s + 1, f"{used_s:.1f} s of processor time for blanks, in {took_s:.1f} s"
     print(f"{connections} connections with up to 1 MiB of blanks: closed at once, {used_s:.2f} s of processor time in {took_s:.1f} s", flush=True)

@@ -92,7 +92,7 @@ def measure(tomcom, folder, signals, gap_s, hz):
         if hz:
             sender = subprocess.Popen([sys.executable, "-c", SENDER, str(PORT + hz), str(hz)])
             # Without gaze that arrives the trial would not start at once.
-            console.wait_for(r"gaze +\d+ Hz|◉")
+            console.wait_for(r"gaze +\d+ Hz")
         console.start()
         time.sleep(2)
         source = f"JSON gaze at {hz} Hz" if hz else "simulated gaze"

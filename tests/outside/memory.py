@@ -36,7 +36,7 @@ def measure(arguments, folder):
         (recording,) = (folder / "recordings").iterdir()
         sender = subprocess.Popen([sys.executable, "-c", SENDER, str(PORT), str(arguments.hz)])
         try:
-            console.wait_for(r"gaze +\d+ Hz|◉")
+            console.wait_for(r"gaze +\d+ Hz")
             console.start()
             viewers = [viewer(folder / f"{name}.rrd", PORT + nth) for nth, name in ((1, "reads"), (2, "stopped"))]
             time.sleep(10)

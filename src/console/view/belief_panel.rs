@@ -7,7 +7,9 @@ use super::paint::Painter;
 use super::regions::PanelAreas;
 use super::theme::TextRole;
 use super::timeline::ticks;
-use crate::console::beliefs::{BeliefCorrectness, EstimatedBelief, are_by_cost, name, percent, value, visibility};
+use crate::console::beliefs::{
+    BeliefCorrectness, EstimatedBelief, are_by_cost, contrast, name, percent, value, visibility,
+};
 use crate::console::console_model::ConsoleModel;
 use crate::console::mouse::ClickAction;
 use crate::console::panels::Panel as PanelName;
@@ -167,19 +169,16 @@ impl Panel<'_> {
         if belief.standing == BeliefCorrectness::Unsure {
             return vec![format!("unsure, may think {thinks}")];
         }
-        let whole = format!("thinks {thinks}, is {truth}");
+        let whole = format!("thinks {thinks}, {truth}");
         match width(&whole) <= columns {
             true => vec![whole],
-            false => [format!("thinks {thinks},"), format!("is {truth}")]
-                .iter()
-                .flat_map(|line| wrap(line, columns))
-                .collect(),
+            false => [format!("thinks {thinks},"), truth].iter().flat_map(|line| wrap(line, columns)).collect(),
         }
     }
 
-    fn values(&self, belief: &EstimatedBelief) -> (&str, &str) {
-        let value = |index| value(&self.session.kitchen, belief.aspect, index);
-        (value(belief.thinks), value(belief.truth))
+    /// What the participant thinks, and what is true: "cut salmon", "needs cut tuna".
+    fn values(&self, belief: &EstimatedBelief) -> (String, String) {
+        contrast(&self.session.kitchen, belief.aspect, belief.thinks, belief.truth)
     }
 
     /// Probability of what the participant thinks or may think, as the line says, and the time for which the truth has
@@ -218,7 +217,7 @@ impl Panel<'_> {
         let (thinks, truth) = self.values(belief);
         match belief.standing {
             BeliefCorrectness::Unsure => (self.title(belief), String::new()),
-            _ => (format!("{}: thinks {thinks}, ", self.title(belief)), format!("is {truth}")),
+            _ => (format!("{}: thinks {thinks}, ", self.title(belief)), truth),
         }
     }
 
@@ -279,11 +278,11 @@ impl Panel<'_> {
             let (thinks, truth) = self.values(belief);
             let line = match belief.standing {
                 BeliefCorrectness::Unsure => self.title(belief),
-                _ => format!("{}: thinks {thinks}, is {truth}", self.title(belief)),
+                _ => format!("{}: thinks {thinks}, {truth}", self.title(belief)),
             };
             // What is believed and what is true have priority over the words between them.
             let line = match width(&line) > columns && belief.standing != BeliefCorrectness::Unsure {
-                true => format!("{}: {thinks}, is {truth}", self.title(belief)),
+                true => format!("{}: {thinks}, {truth}", self.title(belief)),
                 false => line,
             };
             brush.text(x, y, columns, &fit(&line, columns, brush.theme.signs().ellipsis), style);
@@ -297,10 +296,11 @@ impl Panel<'_> {
         let style = brush.style(role(belief));
         let quiet = brush.style(TextRole::Quiet);
         let name = name(self.session, belief.aspect);
+        let right = value(&self.session.kitchen, belief.aspect, belief.truth);
         let thought = match belief.standing {
-            BeliefCorrectness::Right => format!("{name}: {truth}"),
-            BeliefCorrectness::Unsure => format!("{name}: may think {thinks} {}, is {truth}", percent(belief.p.into())),
-            BeliefCorrectness::False => format!("{name}: thinks {thinks} {}, is {truth}", percent(belief.p.into())),
+            BeliefCorrectness::Right => format!("{name}: {right}"),
+            BeliefCorrectness::Unsure => format!("{name}: may think {thinks} {}, {truth}", percent(belief.p.into())),
+            BeliefCorrectness::False => format!("{name}: thinks {thinks} {}, {truth}", percent(belief.p.into())),
         };
         // The curve is the probability of the truth; if there is no room for both, the title says this instead of what
         // is believed.
@@ -311,7 +311,7 @@ impl Panel<'_> {
                 brush.text(area.x, area.y, area.width, &thought, style);
             }
             false => {
-                let whole = format!("{name}: probability of {truth}");
+                let whole = format!("{name}: probability of {right}");
                 let titles = [whole, format!("{name}: {curve}"), format!("{name}: P(truth)")];
                 let fits = titles.iter().find(|title| width(title) <= area.width);
                 brush.text(area.x, area.y, area.width, fits.unwrap_or(&titles[2]), style);

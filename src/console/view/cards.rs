@@ -7,7 +7,7 @@ use super::dialog::open;
 use super::footer::onward;
 use super::head;
 use super::paint::Painter;
-use super::regions::{PanelAreas, ScreenSize};
+use super::regions::PanelAreas;
 use super::theme::TextRole;
 use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
@@ -85,7 +85,7 @@ fn before(session: &Session, model: &ConsoleModel) -> Card {
         fact("kitchen", session.kitchen.title.clone(), TextRole::Text),
         fact("trial length", length, TextRole::Text),
     ];
-    for (index, (text, role)) in head::healths(session, model, ScreenSize::Medium).into_iter().enumerate() {
+    for (index, (text, role)) in head::healths(session, model).into_iter().enumerate() {
         let name = if index == 0 { "devices" } else { "" };
         facts.push(fact(name, text.trim().to_string(), role));
     }

@@ -13,6 +13,7 @@ use crate::console::console_model::{ConsoleModel, Dialog, Notice, NoticeLevel, R
 use crate::console::interventions::can_redo;
 use crate::console::key_action::{KeyAction, KeyBinding, KeyLayer, ManualAction, RaterAction, ViewAction};
 use crate::console::mouse::ClickAction;
+use crate::console::panels::opens_difference;
 use crate::console::possible::is_possible;
 use crate::console::text_columns::width;
 use tomcom_session::history::wording;
@@ -50,7 +51,9 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
         true => !matches!(binding.action, KeyAction::Advance | KeyAction::Quit | KeyAction::Manual(ManualAction::Redo)),
         false => matches!(
             binding.action,
-            KeyAction::EndTrial | KeyAction::Look(ViewAction::Next) | KeyAction::Manual(ManualAction::NoteInWords)
+            KeyAction::EndTrial
+                | KeyAction::Look(ViewAction::Next | ViewAction::Open)
+                | KeyAction::Manual(ManualAction::NoteInWords)
         ),
     };
     let (mut late, mut first): (Vec<&KeyBinding>, Vec<&KeyBinding>) = model.keys.bindings.iter().partition(is_late);
@@ -206,6 +209,7 @@ fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -
             _ => Some("start"),
         },
         KeyAction::Move(ReplayAction::PlayPause) => Some(if plays { "pause" } else { "play" }),
+        KeyAction::Look(ViewAction::Open) if opens_difference(model) => Some("difference"),
         KeyAction::Quit if is_over && session.is_step_done() => Some("close the session"),
         KeyAction::Quit if model.coding.as_ref().is_some_and(|coding| coding.is_saved) => Some("quit (saved)"),
         // After the trial the robot rests, and the line of key hints offers only the next step.
@@ -213,7 +217,7 @@ fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -
         | KeyAction::ResumeRobot
         | KeyAction::SwitchLayer
         | KeyAction::TakeBack
-        | KeyAction::Look(ViewAction::Next)
+        | KeyAction::Look(ViewAction::Next | ViewAction::Open)
             if is_over =>
         {
             None

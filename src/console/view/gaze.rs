@@ -12,7 +12,7 @@ use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
 use crate::console::gaze_check::{AS_IT_IS, AccuracyCheckAction, CORRECTED, REPEAT, chosen};
 use crate::console::key_action::KeyLayer;
-use crate::console::kitchen_map::KitchenMap;
+use crate::console::kitchen_map::{KitchenMap, KitchenMapAreas};
 use crate::console::text_columns::{fit, width};
 use tomcom_core::base::text::count;
 use tomcom_core::gaze::calibration::{GOOD_DEG, GazeAccuracy, USABLE_DEG};
@@ -152,13 +152,12 @@ pub fn draw_map(brush: &mut Painter, regions: &PanelAreas, session: &Session, mo
     if let Some((_, sample)) = session.gaze.last {
         let (x, y) = cell([sample.x, sample.y]);
         let style = brush.style(TextRole::Gaze);
-        // Text under the gaze stays readable: the cell is drawn inverse instead of with the gaze sign.
-        match labels.iter().any(|label| label.contains((x, y).into())) && brush.is_written(x, y) {
-            true => brush.buffer.set_style(Rect::new(x, y, 1, 1), style.add_modifier(Modifier::REVERSED)),
-            false => {
-                brush.text(x, y, 1, signs.gaze, style);
-            }
-        }
+        // Text under the gaze stays readable: the sign stands in the nearest free cell of the row.
+        let is_free = |at: &u16| !labels.iter().any(|label| label.contains((*at, y).into()));
+        let near =
+            (0..inside.width).flat_map(|by| [x.saturating_sub(by).max(inside.x), (x + by).min(inside.right() - 1)]);
+        let x = near.into_iter().find(is_free).unwrap_or(x);
+        brush.text(x, y, 1, signs.gaze, style);
     }
 }
 
@@ -187,11 +186,19 @@ fn free(inside: Rect, labels: &[Rect], (x, y): (u16, u16), columns: u16) -> Opti
         .find(is_free)
 }
 
-pub(super) fn mark(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session: &Session, model: &ConsoleModel) {
+/// Draws the gaze sign where the participant looks. Text under the gaze stays as it is: the sign then stands after the
+/// name of the place or, where there is no room, before it.
+pub(super) fn mark(
+    brush: &mut Painter,
+    plan: &KitchenMap,
+    areas: KitchenMapAreas,
+    session: &Session,
+    model: &ConsoleModel,
+) {
     let Some((at, sample)) = session.gaze.last else { return };
     let age_s = model.now.secs_since(at);
     let Some((x, y)) = plan.cell([sample.x, sample.y]) else { return };
-    if age_s > GAZE_S || x < panel.x || x >= panel.right() || y < panel.y || y >= panel.bottom() {
+    if age_s > GAZE_S || ![areas.orders, areas.places].iter().any(|area| area.contains((x, y).into())) {
         return;
     }
     let style = brush.style(TextRole::Gaze);
@@ -201,18 +208,16 @@ pub(super) fn mark(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session:
     let has_text = |x: u16| brush.buffer.cell((x, y)).is_some_and(|cell| is_text(cell.symbol()));
     // A space between two words counts as text that the gaze sign must not cover.
     let covers_text = has_text(x) || (has_text(x.saturating_sub(1)) && has_text(x + 1));
-    if !covers_text {
+    let spot = plan.spots.iter().find(|spot| spot.cells.contains((x, y).into())).filter(|_| covers_text);
+    let Some(spot) = spot else {
         brush.text(x, y, 1, sign, style);
         return;
-    }
-    // Text under the gaze stays readable: its letter is drawn inverse, and the gaze sign stands after the name of the
-    // place or, where there is no room, before it.
-    brush.buffer.set_style(Rect::new(x, y, 1, 1), style.add_modifier(Modifier::REVERSED));
-    if let Some(spot) = plan.spots.iter().find(|spot| spot.cells.contains((x, y).into())) {
-        let after = spot.cells.right();
-        let beside = if brush.is_written(after, spot.cells.y) { spot.cells.x } else { after };
-        brush.text(beside, spot.cells.y, 1, sign, style);
-    }
+    };
+    let cells = spot.cells;
+    let is_free = |x: &u16| !brush.is_written(*x, cells.y) && !brush.is_written(x.saturating_sub(1), cells.y);
+    let gap = Some(cells.right()).filter(|x| !brush.is_written(*x, cells.y));
+    let free = (cells.x + 1..cells.right()).find(is_free).or(gap);
+    brush.text(free.unwrap_or(cells.x), cells.y, 1, sign, style);
 }
 
 const COLUMNS: u16 = 76;

@@ -4,7 +4,8 @@ use ratatui::style::Style;
 
 use super::gaze::USABLE_S;
 use super::paint::Painter;
-use super::regions::{PanelAreas, ROOMY_COLUMNS, ScreenSize};
+use super::regions::{PanelAreas, ROOMY_COLUMNS};
+use super::side_panels::SLOW;
 use super::theme::TextRole;
 use crate::console::console_model::{ConsoleModel, RecordingStatus, RerunStreamStatus};
 use crate::console::probe_keys;
@@ -16,17 +17,24 @@ use tomcom_session::settings::{Condition, GazeSource};
 use tomcom_session::tracker::TrackerConnection;
 use tomcom_session::{Session, TrialPhase};
 
-/// Draws the head line of the console: phase, clock, condition, devices.
+/// A part of the head line: its text, its style, and how soon it is left out where there is no room; the parts of rank 0
+/// stay.
+struct HeadPart {
+    text: String,
+    style: Style,
+    rank: u8,
+    /// Whether the next part belongs to this one and stands close to it.
+    is_close: bool,
+}
+
+/// Draws the head line of the console: phase, clock, condition, devices. The states of recording, gaze and robot are never
+/// left out: what does not fit loses the facts first, the number of served orders, then the length of the trial.
 pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.head;
-    // The head line is as wide as the screen even if one panel is at full size.
-    let screen_size = if area.width < ROOMY_COLUMNS { ScreenSize::Small } else { ScreenSize::Medium };
-    let gap = if screen_size == ScreenSize::Small { 1 } else { 3 };
-    let strong = brush.style(TextRole::Strong);
-    // On small screens, the state of the robot takes the room of the program's name.
-    let is_small = screen_size == ScreenSize::Small;
-    let name = if is_small { "" } else { "tomcom" };
-    let mut x = brush.text(area.x + 1, area.y, area.width, name, strong) + gap;
+    let is_small = area.width < ROOMY_COLUMNS;
+    let gap = if is_small { 1 } else { 3 };
+    let (strong, text, quiet) =
+        (brush.style(TextRole::Strong), brush.style(TextRole::Text), brush.style(TextRole::Quiet));
     // A replay does not name the phase; whether it plays is shown beside its position.
     let is_replayed = is_replayed(model);
     let stage = match (model.lesson.is_some(), session.phase) {
@@ -40,45 +48,70 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
         TrialPhase::Running if is_replayed => (" ".to_string(), strong),
         phase => stage_mark(brush, phase),
     };
-    x = brush.text(x, area.y, 19, &format!("{mark}{stage} "), style) + gap;
-    let whose = match (&model.coding, &model.playback) {
+    let part = |text: String, style: Style, rank: u8| HeadPart { text, style, rank, is_close: false };
+    let mut parts = vec![part("tomcom".to_string(), strong, 5), part(format!("{mark}{stage} "), style, 0)];
+    let code = &session.spec.participant.code;
+    match (&model.coding, &model.playback, session.step()) {
         // A rater must not know in which condition the trial was.
-        (Some(coding), _) => Some(format!("rater {}", coding.name())),
-        (None, None) => series(session),
-        (None, Some(_)) => None,
-    };
-    if let Some(whose) = whose {
-        x = brush.text(x, area.y, area.right() - x, &whose, strong) + gap;
+        (Some(coding), ..) => parts.push(part(format!("rater {}", coding.name()), strong, 0)),
+        (None, None, Some((step, _))) => {
+            parts.push(part(code.clone(), strong, 0));
+            parts.push(part(format!("{} {}", step.label(), condition(session)), strong, 4));
+        }
+        _ => parts.push(part(code.clone(), strong, 0)),
     }
     if session.study_phase().is_none_or(|phase| phase.phase().has_trial()) {
-        x = clock(brush, x, area.y, session, model) + gap;
-        let presses = session.all_presses();
-        let unit = if is_small && session.step().is_some() && model.playback.is_none() { "" } else { " presses" };
-        let counts = format!("{presses:>3}/{}{unit}", session.spec.trial.presses);
-        let text = brush.style(TextRole::Text);
-        x = brush.text(x, area.y, 20, &counts, text) + gap;
+        let clock = format!("{:>5}", session.trial_clock(model.now).to_string());
+        parts.push(HeadPart { is_close: true, ..part(clock, strong, 0) });
+        // A replay shows the length of the recording elsewhere.
+        if !is_replayed || model.lesson.is_some() {
+            let length = SessionTime::from_secs_f64(session.spec.trial.seconds);
+            parts.push(part(format!("/ {length}"), quiet, 6));
+        }
+        let presses = format!("{:>3}/{}", session.all_presses(), session.spec.trial.presses);
+        parts.push(HeadPart { is_close: true, ..part(presses, text, 2) });
+        parts.push(part("presses".to_string(), text, 3));
     }
-    let mut healths = healths(session, model, screen_size);
+    let facts = probe_keys::status(session, model).into_iter().chain(facts(session, model));
+    parts.extend(facts.enumerate().map(|(index, fact)| part(fact, quiet, 10 + index as u8)));
+    let mut healths = healths(session, model);
     let needed = |healths: &[(String, TextRole)]| healths.iter().map(|(text, _)| width(text) + gap).sum::<u16>();
-    // If not all device states fit, those that are in order are left out first, from the last one on.
-    while needed(&healths) > area.right().saturating_sub(x)
+    let columns = |parts: &[HeadPart]| -> u16 { parts.iter().map(|part| width(&part.text) + part.gap(gap)).sum() };
+    let lacks = |parts: &[HeadPart], healths: &[(String, TextRole)]| area.width < 1 + columns(parts) + needed(healths);
+    while lacks(&parts, &healths)
+        && let Some((index, last)) = parts.iter().enumerate().max_by_key(|(_, part)| part.rank)
+        && last.rank > 0
+    {
+        parts.remove(index);
+    }
+    // Of the states, those that are no alarm and stand behind the first three are left out next.
+    while lacks(&parts, &healths)
+        && healths.len() > ALWAYS
         && let Some(fine) = healths.iter().rposition(|(_, role)| matches!(role, TextRole::Text | TextRole::Quiet))
+        && fine >= ALWAYS
     {
         healths.remove(fine);
     }
-    let needed = needed(&healths);
-    let mut right = area.right().saturating_sub(needed).max(x);
-    let quiet = brush.style(TextRole::Quiet);
-    for text in probe_keys::status(session, model).into_iter().chain(facts(session, model)) {
-        if x + width(&text) + gap < right {
-            x = brush.text(x, area.y, right - x, &text, quiet) + gap;
-        }
+    let mut x = area.x + 1;
+    for part in &parts {
+        x = brush.text(x, area.y, area.right().saturating_sub(x), &part.text, part.style) + part.gap(gap);
     }
+    let mut right = area.right().saturating_sub(needed(&healths)).max(x);
     for (text, role) in healths {
         let style = brush.style(role);
         right = brush.text(right, area.y, area.right().saturating_sub(right), &text, style) + gap;
     }
 }
+
+impl HeadPart {
+    /// Columns after the part.
+    fn gap(&self, gap: u16) -> u16 {
+        if self.is_close { 1 } else { gap }
+    }
+}
+
+/// Number of states at the right end that are never left out: recording or replay, gaze, robot.
+const ALWAYS: usize = 3;
 
 /// Whether the console replays a recording that is no longer being made.
 fn is_replayed(model: &ConsoleModel) -> bool {
@@ -95,16 +128,6 @@ fn stage_mark(brush: &Painter, phase: TrialPhase) -> (String, Style) {
     }
 }
 
-fn clock(brush: &mut Painter, x: u16, y: u16, session: &Session, model: &ConsoleModel) -> u16 {
-    let clock = session.trial_clock(model.now).to_string();
-    // A replay shows the length of the recording elsewhere.
-    let limit = match is_replayed(model) && model.lesson.is_none() {
-        true => String::new(),
-        false => format!(" / {}", SessionTime::from_secs_f64(session.spec.trial.seconds)),
-    };
-    brush.parts(x, y, 16, &[(&format!("{clock:>5}"), TextRole::Strong), (&limit, TextRole::Quiet)])
-}
-
 /// Sender of signals in this condition, in a word: "unassisted", "assistant", "wizard".
 pub(super) fn condition(session: &Session) -> &'static str {
     match session.spec.trial.condition {
@@ -114,60 +137,51 @@ pub(super) fn condition(session: &Session) -> &'static str {
     }
 }
 
-/// Position of the trial in the participant's series: "P07 trial 2/2 wizard".
-fn series(session: &Session) -> Option<String> {
-    let (step, _) = session.step()?;
-    Some(format!("{} {} {}", session.spec.participant.code, step.label(), condition(session)))
-}
-
 /// Facts of the head line that do not change during a trial, the most important first.
 fn facts(session: &Session, model: &ConsoleModel) -> Vec<String> {
-    let condition = condition(session);
     let served = format!("{} served", session.served.len());
-    let code = session.spec.participant.code.clone();
-    if session.step().is_some() && model.playback.is_none() {
-        return [served, session.kitchen.title.clone()].into_iter().chain(streamed(model)).collect();
-    }
+    let condition = condition(session).to_string();
     let mut facts = match &model.playback {
-        None => vec![code, condition.to_string(), served],
+        None if session.step().is_some() => vec![served],
+        None => vec![served, condition],
         // A rater must not know in which condition the trial was.
         Some(playback) if model.coding.is_some() => vec![served, playback.name.clone()],
-        Some(playback) => vec![served, code, condition.to_string(), playback.name.clone()],
+        Some(playback) => vec![served, condition, playback.name.clone()],
     };
     facts.push(session.kitchen.title.clone());
     facts.extend(streamed(model));
     facts
 }
 
-/// States of recording, gaze, streams and robot in words, with their styles.
-pub(super) fn healths(session: &Session, model: &ConsoleModel, screen_size: ScreenSize) -> Vec<(String, TextRole)> {
-    let mut healths = Vec::new();
-    if !model.focused && model.playback.is_none() {
-        healths.push((" NO KEYBOARD ".to_string(), TextRole::Alarm));
-    }
-    let excluded = model.playback.as_ref().is_some_and(|playback| playback.excluded) || session.excluded.is_some();
-    if excluded {
-        healths.push((" EXCLUDED ".to_string(), TextRole::Strong));
-    }
-    match &model.playback {
+/// States in words, with their styles: recording, gaze and robot, then those that only some sessions have.
+pub(super) fn healths(session: &Session, model: &ConsoleModel) -> Vec<(String, TextRole)> {
+    let recording = match &model.playback {
         Some(playback) => {
             let state = if playback.playing { "play" } else { "paused" };
             let follows = if playback.follows { " live" } else { "" };
-            healths.push((format!("{state} {}{follows}", playback.speed_label()), TextRole::Strong));
-            match (playback.follows, playback.running) {
-                (false, true) => healths.push(("recording goes on: --follow".to_string(), TextRole::Strong)),
-                (false, false) if playback.cut => healths.push(("recording cut".to_string(), TextRole::Alarm)),
-                _ => {}
-            }
+            (format!("{state} {}{follows}", playback.speed_label()), TextRole::Strong)
         }
-        None => healths.push(match &model.recording {
+        None => match &model.recording {
             RecordingStatus::Off => ("not recorded".to_string(), TextRole::Quiet),
             RecordingStatus::On(_) => (format!("{} rec", model.theme.signs().recording), TextRole::Text),
             RecordingStatus::Lost => (" RECORDING LOST ".to_string(), TextRole::Alarm),
-        }),
+        },
+    };
+    let mut healths = vec![recording, gaze(session, model), robot(session)];
+    if !model.focused && model.playback.is_none() {
+        healths.push((" NO KEYBOARD ".to_string(), TextRole::Alarm));
     }
-    if screen_size > ScreenSize::Small || model.playback.is_none() {
-        healths.push(gaze(session, model));
+    if model.playback.as_ref().is_some_and(|playback| playback.excluded) || session.excluded.is_some() {
+        healths.push((" EXCLUDED ".to_string(), TextRole::Strong));
+    }
+    match &model.playback {
+        Some(playback) if !playback.follows && playback.running => {
+            healths.push(("recording goes on: --follow".to_string(), TextRole::Strong));
+        }
+        Some(playback) if !playback.follows && playback.cut => {
+            healths.push(("recording cut".to_string(), TextRole::Alarm));
+        }
+        _ => {}
     }
     if let Some((text, is_fine)) = model.display.as_ref().map(|display| display.line()) {
         healths.push((text, if is_fine { TextRole::Text } else { TextRole::Alarm }));
@@ -175,17 +189,21 @@ pub(super) fn healths(session: &Session, model: &ConsoleModel, screen_size: Scre
     if let Some(RerunStreamStatus { dropped: dropped @ 1.., .. }) = &model.viewers {
         healths.push((format!("RERUN {dropped} ROWS DROPPED"), TextRole::Alarm));
     }
+    healths
+}
+
+/// State of the robot in words.
+fn robot(session: &Session) -> (String, TextRole) {
     let mode = session.robot.safety_mode();
-    let robot = match (session.robot.stopped, session.robot.held) {
+    let slow = format!("robot {SLOW}");
+    let (words, role) = match (session.robot.stopped, session.robot.held) {
         (true, _) => (mode.name(), TextRole::Alarm),
         (false, true) => ("ROBOT HELD", TextRole::Strong),
         (false, false) if mode == SafetyMode::Safeguard => (mode.name(), TextRole::Strong),
+        (false, false) if mode == SafetyMode::Reduced => (slow.as_str(), TextRole::Strong),
         (false, false) => ("robot ok", TextRole::Text),
     };
-    if model.playback.is_none() || robot.1 != TextRole::Text {
-        healths.push((robot.0.to_string(), robot.1));
-    }
-    healths
+    (words.to_string(), role)
 }
 
 /// Address for Rerun viewers, while no row of the stream has been dropped.

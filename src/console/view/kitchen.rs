@@ -17,6 +17,7 @@ use crate::console::text_columns::{fit, squeeze, width, wrap, wrap_to};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, LocationKind, OrderContent};
 use tomcom_session::Session;
+use tomcom_session::history::order_needs::order_needs;
 use tomcom_session::history::wording;
 use tomcom_session::settings::Condition;
 
@@ -35,38 +36,68 @@ pub fn draw(
     model: &ConsoleModel,
     believed: &[EstimatedBelief],
 ) {
-    let area = regions.kitchen;
-    if area.area() == 0 {
+    if regions.kitchen.area() == 0 && regions.orders.area() == 0 {
         return;
     }
     if regions.screen_size > ScreenSize::Small {
-        let remark = match model.layer {
-            KeyLayer::Wizard if model.coding.is_some() => "[key] codes a false belief about this place",
-            KeyLayer::Wizard if model.playback.is_some() => "",
-            KeyLayer::Wizard if session.spec.trial.condition == Condition::None => "unassisted: nobody sends signals",
-            KeyLayer::Wizard if session.spec.trial.condition == Condition::Assistant => {
-                "the assistant sends the signals"
-            }
-            KeyLayer::Wizard => "[key] sends a signal about this place",
-            KeyLayer::Participant => "[key] presses the participant's button",
-        };
-        brush.panel(area, &session.kitchen.title, remark);
+        frames(brush, regions, session, model);
     }
-    let plan = KitchenMap::for_session(session, model.coding.is_some(), regions.kitchen_inside());
-    zones(brush, &plan);
+    let areas = regions.kitchen_inside();
+    let plan = KitchenMap::for_session(session, model.coding.is_some(), areas);
+    if regions.kitchen.area() > 0 {
+        zones(brush, &plan);
+    }
+    // Whoever plays the participant at this keyboard has to remember the recipes.
+    let needs = match model.layer {
+        KeyLayer::Wizard => order_needs(&session.kitchen, session.state),
+        KeyLayer::Participant => Vec::new(),
+    };
     let offered = offers::shown(session, model).and_then(|offer| offer.place(session));
     for spot in &plan.spots {
         match spot.thing {
             KitchenMapElement::Location(location) => {
                 let place = Place::new(session, model, location);
                 let thinks = offers::thinks(session, believed, location);
-                Place { thinks, is_offered: offered == Some(location), ..place }.draw(brush, spot);
+                let place = Place { thinks, is_offered: offered == Some(location), ..place };
+                match session.kitchen.location(location).kind {
+                    LocationKind::Order => {
+                        place.draw_order(brush, spot, needs.iter().find(|needs| needs.order == location));
+                    }
+                    _ => place.draw(brush, spot),
+                }
             }
             KitchenMapElement::Storage(index) => storage(brush, session, model, index, spot.cells),
         }
     }
-    gaze::mark(brush, &plan, area, session, model);
-    super::gaze::draw_target(brush, &plan, area, session);
+    gaze::mark(brush, &plan, areas, session, model);
+    gaze::draw_target(brush, &plan, areas.places, session);
+}
+
+/// Draws the frames of orders and kitchen, with what their keys do and what their signs mean.
+fn frames(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
+    let keys = match model.layer {
+        KeyLayer::Wizard if model.coding.is_some() => "[key] codes a false belief",
+        KeyLayer::Wizard if model.playback.is_some() => "",
+        KeyLayer::Wizard if session.spec.trial.condition == Condition::None => "nobody sends signals",
+        KeyLayer::Wizard if session.spec.trial.condition == Condition::Assistant => "the assistant sends the signals",
+        KeyLayer::Wizard => "[key] sends a signal",
+        KeyLayer::Participant => "[key] presses the button",
+    };
+    let signs = brush.theme.signs();
+    let there = match model.layer {
+        KeyLayer::Wizard => format!("{} there  {} missing", signs.served, signs.missing),
+        KeyLayer::Participant => String::new(),
+    };
+    if regions.orders.area() > 0 {
+        brush.panel(regions.orders, "Orders", &there);
+    }
+    if regions.kitchen.area() > 0 {
+        let gaze = format!("  {} gaze", signs.gaze);
+        let unseen =
+            if model.layer == KeyLayer::Wizard { format!("  {} changed unseen", signs.changed) } else { String::new() };
+        let remark = [(keys, TextRole::Quiet), (&gaze, TextRole::Gaze), (&unseen, TextRole::Gaze)];
+        brush.panel_with(regions.kitchen, &session.kitchen.title, &remark);
+    }
 }
 
 fn zones(brush: &mut Painter, plan: &KitchenMap) {
@@ -131,18 +162,19 @@ fn agent_role(agent: Option<Agent>) -> TextRole {
 }
 
 /// Box of a kitchen location: a vertical rule that shows the location's state, then key, name and content.
-struct Place<'a> {
-    session: &'a Session,
-    model: &'a ConsoleModel,
-    id: LocationId,
+pub(super) struct Place<'a> {
+    pub session: &'a Session,
+    pub model: &'a ConsoleModel,
+    pub id: LocationId,
     kitchen: &'a Kitchen,
-    content: String,
+    pub content: String,
     is_empty: bool,
     /// Seconds since a recent change of the location's content, and the agent that changed it.
     fresh: Option<(f64, Option<Agent>)>,
-    is_shown: bool,
+    pub is_shown: bool,
     is_offered: bool,
-    thinks: Option<String>,
+    /// What the participant falsely believes about the place, and what is true.
+    pub thinks: Option<(String, String)>,
 }
 
 impl<'a> Place<'a> {
@@ -168,35 +200,27 @@ impl<'a> Place<'a> {
             return;
         }
         self.rule(brush, cells);
-        let name_ends = self.title(brush, cells, spot.right());
-        let is_order = self.kitchen.location(self.id).kind == LocationKind::Order;
+        self.title(brush, cells, spot.right());
         let below = Rect { x: cells.x + 2, y: cells.y + 1, width: cells.width - 2, height: cells.height - 1 };
-        match (is_order, below.height) {
-            (true, 0) => {
-                let x = name_ends + 1;
-                self.order(brush, Rect { x, width: cells.right().saturating_sub(x), ..cells });
-            }
-            (true, _) => self.order(brush, below),
-            (false, 0) => {}
-            (false, height) => {
-                let buttons = further_buttons(self.session, self.model, self.id);
-                let free = height - (buttons.len() as u16).min(height - 1);
-                let room = Rect { height: free, ..below };
-                let lines = self.contents(brush, room);
-                match buttons.is_empty() {
-                    true => self.news_and_belief(brush, room, lines),
-                    false => {
-                        self.belief(brush, room, lines);
-                        draw_buttons(brush, below, &buttons);
-                    }
-                }
+        if below.height == 0 {
+            return;
+        }
+        let buttons = further_buttons(self.session, self.model, self.id);
+        let free = below.height - (buttons.len() as u16).min(below.height - 1);
+        let room = Rect { height: free, ..below };
+        let lines = self.contents(brush, room);
+        match buttons.is_empty() {
+            true => self.news_and_belief(brush, room, lines),
+            false => {
+                self.belief(brush, room, lines);
+                draw_buttons(brush, below, &buttons);
             }
         }
     }
 
     /// Draws the vertical rule of the location: heavy while a signal highlights the location, in the agent's colour
     /// after a change.
-    fn rule(&self, brush: &mut Painter, cells: Rect) {
+    pub(super) fn rule(&self, brush: &mut Painter, cells: Rect) {
         let signs = brush.theme.signs();
         let (sign, role) = match (self.is_shown, self.fresh) {
             (true, _) => (signs.rules[2], TextRole::Signal),
@@ -212,7 +236,7 @@ impl<'a> Place<'a> {
 
     /// Draws key and name of the location; a long name may fill the gap to the next box, which begins at `right`. Returns
     /// the next column.
-    fn title(&self, brush: &mut Painter, cells: Rect, right: u16) -> u16 {
+    pub(super) fn title(&self, brush: &mut Painter, cells: Rect, right: u16) -> u16 {
         let label = self.kitchen.location(self.id).label();
         let mut x = cells.x + 1;
         if let Some((key, role)) = self.key() {
@@ -233,7 +257,7 @@ impl<'a> Place<'a> {
 
     /// Whether the location's box marks that the participant has not seen the last change; the mark is for the wizard,
     /// not for a participant at this keyboard.
-    fn is_unseen(&self) -> bool {
+    pub(super) fn is_unseen(&self) -> bool {
         self.model.layer == KeyLayer::Wizard && self.session.is_unseen(self.id)
     }
 
@@ -253,7 +277,7 @@ impl<'a> Place<'a> {
         }
     }
 
-    fn content_style(&self, brush: &Painter) -> Style {
+    pub(super) fn content_style(&self, brush: &Painter) -> Style {
         match self.fresh {
             Some((age_s, by)) if age_s < LOUD_S => {
                 brush.style(agent_role(by)).add_modifier(Modifier::BOLD | Modifier::UNDERLINED)
@@ -290,7 +314,7 @@ impl<'a> Place<'a> {
             self.news(brush, room, lines);
             return;
         }
-        let thought = self.thinks.as_deref().map_or(0, |thinks| wrap(&thinks_of(thinks), room.width).len() as u16);
+        let thought = self.thinks.as_ref().map_or(0, |(thinks, _)| wrap(&thinks_of(thinks), room.width).len() as u16);
         let own_line = u16::from(lines + thought < room.height);
         let has_news = self.news(brush, Rect { height: lines + own_line, ..room }, lines);
         self.belief(brush, room, lines + if has_news { own_line } else { 0 });
@@ -298,7 +322,7 @@ impl<'a> Place<'a> {
 
     /// Draws the false belief about the location below the first lines, or at the end of the last line if none is free.
     fn belief(&self, brush: &mut Painter, room: Rect, lines: u16) {
-        let Some(thinks) = &self.thinks else { return };
+        let Some((thinks, _)) = &self.thinks else { return };
         let style = brush.style(TextRole::FalseBelief);
         let words = thinks_of(thinks);
         if lines < room.height {
@@ -317,53 +341,6 @@ impl<'a> Place<'a> {
         brush.text(room.x + written, y, left, words, style);
     }
 
-    /// Draws an order: its dish, its age, a false belief about it, and the recipe while a signal shows it.
-    fn order(&self, brush: &mut Painter, room: Rect) {
-        let style = self.content_style(brush);
-        let is_wanted = matches!(self.session.state.order(self.id), OrderContent::Dish(_));
-        let age = self.session.age(self.session.changed_at[self.id.index()], self.model.now);
-        let sign = brush.theme.signs().served;
-        let text = match self.session.state.order(self.id) {
-            OrderContent::Served => format!("{sign} served"),
-            OrderContent::None => "no order".to_string(),
-            OrderContent::Dish(_) => self.content.clone(),
-        };
-        let end = brush.text(room.x, room.y, room.width.saturating_sub(6), &text, style);
-        let thinks = self.thinks.as_deref().map(thinks_of);
-        let recipe = wording::recipe(self.session, self.id).filter(|_| self.is_shown && room.height > 1);
-        let recipe_row = if thinks.is_some() && room.height > 2 { 2 } else { 1 };
-        if let Some(thinks) = &thinks
-            && (room.height == 1 || recipe.is_none() || recipe_row == 2)
-        {
-            let (x, y) = if room.height > 1 { (room.x, room.y + 1) } else { (end + 1, room.y) };
-            let (style, left) = (brush.style(TextRole::FalseBelief), room.right().saturating_sub(x));
-            let free = (room.height.saturating_sub(1)).max(1) - u16::from(recipe.is_some());
-            let short = [FALSE_BELIEF, "false"].into_iter().find(|words| width(words) <= left);
-            let lines = match room.height {
-                // In a single line, the believed value may have room only in the line of the belief.
-                1 if width(thinks) > left => short.into_iter().map(str::to_string).collect(),
-                _ => wrap_to(thinks, left, free, brush.theme.signs().ellipsis),
-            };
-            for (row, line) in lines.iter().enumerate() {
-                brush.text(x, y + row as u16, left, line, style);
-            }
-        }
-        if is_wanted && (thinks.is_none() || room.height > 1) {
-            let gap = if room.height > 1 { 2 } else { 1 };
-            let unseen = if self.is_unseen() { "unseen" } else { "" };
-            let left = |x: u16| room.right().saturating_sub(x);
-            let x = brush.parts(end + gap, room.y, left(end + gap), &[(&age.to_string(), TextRole::Quiet)]) + gap;
-            if width(unseen) <= left(x) {
-                brush.parts(x, room.y, left(x), &[(unseen, TextRole::Gaze)]);
-            }
-        }
-        if let Some(recipe) = recipe {
-            let style = brush.style(TextRole::Signal);
-            let recipe = squeeze(&recipe, room.width, brush.theme.signs().ellipsis);
-            brush.text(room.x, room.y + recipe_row, room.width, &recipe, style);
-        }
-    }
-
     /// Draws the robot's next press here and a recent change, below the content or at the end of its last line; returns
     /// whether there is either.
     fn news(&self, brush: &mut Painter, room: Rect, lines: u16) -> bool {
@@ -375,13 +352,15 @@ impl<'a> Place<'a> {
         {
             news.push((format!("{}robot", signs.to), TextRole::Robot));
         }
+        // One sign says that the participant has not looked since the change.
+        let unseen = if self.is_unseen() { signs.changed } else { "" };
         if let Some((age_s, by)) = self.fresh {
-            let words = by.map(|by| format!("{} {age_s:.0} s ago", by.name()));
+            let words = by.map(|by| format!("{unseen}{} {age_s:.0} s ago", by.name()));
             let words = words.filter(|words| news.is_empty() && width(words) <= room.width && lines < room.height);
-            news.push((words.unwrap_or(format!("{}{age_s:.0}s", signs.changed)), agent_role(by)));
-        } else if self.is_unseen() {
+            news.push((words.unwrap_or(format!("{unseen}{age_s:.0}s")), agent_role(by)));
+        } else if !unseen.is_empty() {
             let age = self.session.age(self.session.changed_at[self.id.index()], self.model.now);
-            news.push((format!("unseen {age}"), TextRole::Gaze));
+            news.push((format!("{unseen}unseen {age}"), TextRole::Gaze));
         }
         let has_news = !news.is_empty();
         let y = room.y + lines.min(room.height - 1);

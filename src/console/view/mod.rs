@@ -16,12 +16,14 @@ mod cards;
 mod coding_panel;
 pub mod comparison_panel;
 pub mod dialog;
+mod events;
 pub mod footer;
 pub mod gaze;
 pub mod head;
 pub mod help;
 pub mod kitchen;
 pub mod offers;
+mod orders;
 pub mod paint;
 pub mod recordings_page;
 pub mod regions;
@@ -46,6 +48,7 @@ fn draw(brush: &mut Painter, session: &Session, model: &ConsoleModel) {
         return;
     }
     let regions = PanelAreas::showing((area.width, area.height), session, model);
+    brush.focus = model.focus.map(|panel| regions.panel_area(panel)).unwrap_or_default();
     head::draw(brush, &regions, session, model);
     let believed = beliefs(session, model);
     offers::draw_offer(brush, &regions, session, model, &believed);
@@ -57,7 +60,8 @@ fn draw(brush: &mut Painter, session: &Session, model: &ConsoleModel) {
     side_panels::draw_display(brush, &regions, session, model);
     side_panels::draw_robot(brush, &regions, session, model);
     gaze::draw(brush, &regions, session, model);
-    timeline::draw_events(brush, &regions, session, model);
+    events::draw_presses(brush, &regions, session, model);
+    events::draw(brush, &regions, session, model);
     timeline::draw(brush, &regions, session, model);
     comparison_panel::draw(brush, &regions, session, model);
     coding_panel::draw(brush, &regions, session, model);

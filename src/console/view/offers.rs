@@ -6,7 +6,6 @@
 
 use ratatui::layout::Rect;
 
-use super::belief_panel::QUIET;
 use super::paint::Painter;
 use super::regions::PanelAreas;
 use super::theme::TextRole;
@@ -19,14 +18,14 @@ use crate::console::panels::Panel;
 use crate::console::text_columns::{width, wrap};
 use tomcom_core::base::text::count;
 use tomcom_core::communication::concept::{BenefitUnit, ConceptName};
-use tomcom_core::communication::offer::OfferedCommunication;
+use tomcom_core::communication::offer::{OfferedCommunication, TAKEN_AFTER};
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption, SignalReason};
-use tomcom_core::communication::{Sender, Signal, unavailable};
-use tomcom_core::kitchen::{AspectId, LocationId};
+use tomcom_core::communication::{Sender, Signal};
+use tomcom_core::kitchen::LocationId;
 use tomcom_session::admit::may_send;
 use tomcom_session::history::wording;
 use tomcom_session::settings::{Condition, WizardVisibility};
-use tomcom_session::{Session, TimelineEvent, TrialPhase, offers};
+use tomcom_session::{Session, TrialPhase, offers};
 
 /// The offer as it is drawn: the open offer or, in recordings that have no offers, the best signal.
 pub(super) struct ShownOffer<'a> {
@@ -96,23 +95,33 @@ impl ShownOffer<'_> {
         }
     }
 
+    /// Which signal on the participant's display the offered one would replace. The recommendation already counts the
+    /// signal on the display as read, so that an offer is worth sending beyond it.
+    fn replaces(&self, session: &Session) -> Option<String> {
+        let shown = session.shown.as_ref().filter(|_| matches!(self.act, OfferedCommunication::Signal(_)))?;
+        Some(format!("replaces {}", wording::signal(&shown.signal)))
+    }
+
     /// Reasons for the offer, most important first: what the participant believes and what is true, how certain that is
     /// and for how long, and the wrong press or the press that is left out.
     fn because(&self, session: &Session, model: &ConsoleModel, believed: &[EstimatedBelief]) -> Vec<String> {
         let Some(reason) = self.reason.map(|reason| wording::reason(&session.kitchen, reason)) else {
-            return Vec::new();
+            return self.replaces(session).into_iter().collect();
         };
         let aspect = session.kitchen.aspect_named(&reason.aspect);
         let belief = believed.iter().find(|belief| Some(belief.aspect) == aspect);
         // Each belief has one value and one certainty on the screen, those of the belief panel.
-        let (believes, p) = match belief {
-            Some(belief) => (beliefs::value(&session.kitchen, belief.aspect, belief.thinks), f64::from(belief.p)),
-            None => (reason.believes.as_str(), reason.p_believes),
+        let ((believes, truth), p) = match belief {
+            Some(belief) => {
+                (beliefs::contrast(&session.kitchen, belief.aspect, belief.thinks, belief.truth), f64::from(belief.p))
+            }
+            None => ((reason.believes, format!("is {}", reason.truth)), reason.p_believes),
         };
         let since = belief.and_then(|belief| belief.since);
         let age = since.map_or(String::new(), |since| format!(" for {}", session.age(since, model.now)));
         let thinks = if p >= 0.5 { "thinks" } else { "may think" };
-        let mut said = vec![format!("{thinks} {believes}, is {}", reason.truth), format!("{}{age}", percent(p))];
+        let mut said = vec![format!("{thinks} {believes}, {truth}"), format!("{}{age}", percent(p))];
+        said.extend(self.replaces(session));
         said.extend(match (&reason.prevents, &reason.instead) {
             (Some(button), _) => Some(format!("next error: {}", wording::location(button))),
             (None, Some(button)) => Some(format!("waits instead of: {}", wording::location(button))),
@@ -121,6 +130,9 @@ impl ShownOffer<'_> {
         said
     }
 }
+
+/// Words of the line of the offer while no signal is worth its cost.
+const NOTHING_TO_SAY: &str = "nothing worth saying";
 
 /// Draws the line of the offer, or why there is no offer.
 pub fn draw_offer(
@@ -140,16 +152,9 @@ pub fn draw_offer(
         brush.target(area, ClickAction::Key(chord));
     }
     let Some(offer) = shown(session, model) else {
-        let style = brush.style(TextRole::Quiet);
-        let (words, columns) = (why_no_offer(session, model, believed), area.width.saturating_sub(2));
-        // What the best signal would be has a line of its own where there is one.
-        let lines: Vec<String> = match area.height {
-            1 => vec![words.join("; ")],
-            _ => words.iter().flat_map(|words| wrap(words, columns)).collect(),
-        };
-        for (line, y) in lines.iter().zip(area.rows().map(|row| row.y)) {
-            brush.text(area.x + 1, y, area.width - 1, line, style);
-        }
+        let quiet = brush.style(TextRole::Quiet);
+        let words = closed(session, model).unwrap_or_else(|| why_no_offer(session, believed));
+        brush.text(area.x + 1, area.y, area.width - 1, &words, quiet);
         return;
     };
     let badge = brush.theme.badge(TextRole::Signal);
@@ -176,72 +181,45 @@ pub fn draw_offer(
     }
 }
 
-/// Why no signal is offered to the wizard, in words: the signal on the participant's display; else how many beliefs are
-/// false and, as far as it is known, why none is offered.
-fn why_no_offer(session: &Session, model: &ConsoleModel, believed: &[EstimatedBelief]) -> Vec<String> {
-    let only = |words: &str| vec![words.to_string()];
+/// The offer that has just closed and why, as long as the key still takes it; then it is told in the timeline alone.
+fn closed(session: &Session, model: &ConsoleModel) -> Option<String> {
+    let last = session.offers.last().filter(|last| last.offer.advice.visible && offers::are_made(session))?;
+    let may_see = beliefs::visibility(session, model) == WizardVisibility::Recommendation;
+    if !may_see || session.age(last.closed, model.now) > TAKEN_AFTER || !session.is_running() {
+        return None;
+    }
+    let key =
+        model.keys.chord_for(&KeyAction::Accept).filter(|_| last.offer.used.is_none() && model.playback.is_none());
+    let still = key.map_or(String::new(), |key| format!("; {key} still sends it"));
+    Some(format!("{}: {}{still}", wording::offered(&last.offer.advice.what), last.reason.words()))
+}
+
+/// What the line of the offer says while nothing is on offer. While the trial runs, its text changes only when a belief
+/// becomes false or true.
+fn why_no_offer(session: &Session, believed: &[EstimatedBelief]) -> String {
     if session.spec.trial.condition == Condition::Assistant {
-        return only("The assistant sends the signals, without the wizard");
+        return "The assistant sends the signals, without the wizard".to_string();
     }
     if !session.spec.asks_assistant() {
-        return only("The assistant does not advise in this session (shadow = \"off\")");
+        return "The assistant does not advise in this session (shadow = \"off\")".to_string();
     }
     match session.phase {
         TrialPhase::Running | TrialPhase::Paused => {}
-        TrialPhase::Ready => return only("The assistant advises while the trial runs"),
-        TrialPhase::Over(_) | TrialPhase::Closed => return only("The trial is over"),
+        TrialPhase::Ready => return "The assistant advises while the trial runs".to_string(),
+        TrialPhase::Over(_) | TrialPhase::Closed => return "The trial is over".to_string(),
     }
-    let wrong = believed.iter().filter(|belief| belief.standing == BeliefCorrectness::False);
-    let wrong: Vec<AspectId> = wrong.map(|belief| belief.aspect).collect();
-    let first = match wrong.len() {
-        0 => QUIET.to_string(),
-        number => count(number as u64, "false belief", "false beliefs"),
-    };
-    if let Some(shown) = &session.shown {
-        return vec![format!("On the display: {}", wording::signal(&shown.signal)), first];
+    match believed.iter().filter(|belief| belief.standing == BeliefCorrectness::False).count() as u64 {
+        0 => NOTHING_TO_SAY.to_string(),
+        number => format!("{NOTHING_TO_SAY}; {}", count(number, "false belief", "false beliefs")),
     }
-    let why = too_costly(session).or_else(|| withheld(session, model, &wrong));
-    [first].into_iter().chain(why).collect()
 }
 
-/// Why no signal about these false beliefs is offered, where the session knows it: one was sent just now, or one was
-/// sent and is not repeated yet.
-fn withheld(session: &Session, model: &ConsoleModel, wrong: &[AspectId]) -> Option<String> {
-    if wrong.is_empty() {
-        return None;
-    }
-    let cool_down_s = session.spec.signals.cool_down_s;
-    if session.signalled_at.is_some_and(|sent| model.now.secs_since(sent) < cool_down_s) {
-        return Some(format!("signals need {cool_down_s} s between them"));
-    }
-    let advice = session.advice.as_ref()?;
-    let places: Vec<LocationId> = wrong.iter().filter_map(|&aspect| beliefs::place(session, aspect)).collect();
-    let is_about = |signal: &Signal| signal.location(&session.kitchen).is_some_and(|place| places.contains(&place));
-    // A recommendation lists every signal that can be sent, except those that were sent and must not be repeated yet.
-    let is_listed = |signal: &Signal| advice.options.iter().any(|option| option.signal == *signal);
-    let sent =
-        session.timeline.iter().rev().filter(|entry| entry.time <= model.now).find_map(|entry| match &entry.what {
-            TimelineEvent::Signal { signal, .. } if is_about(signal) && !is_listed(signal) => Some(signal),
-            _ => None,
-        })?;
-    let can_be_sent = unavailable(&session.kitchen, session.state, sent).is_none();
-    can_be_sent.then(|| format!("{} was sent and is not repeated yet", wording::signal(sent)))
-}
-
-/// That signals are known, but that none saves as much as it costs.
-fn too_costly(session: &Session) -> Option<String> {
-    let is_estimated = session.spec.assistant.concept.unit() != BenefitUnit::None;
-    let options = session.advice.iter().flat_map(|advice| &advice.options);
-    let best = options.max_by(|one, other| one.net.total_cmp(&other.net)).filter(|_| is_estimated)?;
-    (best.net <= 0.0 && best.benefit >= NOTHING).then(|| "no signal is worth its cost".to_string())
-}
-
-/// The value that the participant falsely believes about a location, if any.
-pub(super) fn thinks(session: &Session, believed: &[EstimatedBelief], place: LocationId) -> Option<String> {
+/// What the participant falsely believes about a location and what is true, if there is a false belief.
+pub(super) fn thinks(session: &Session, believed: &[EstimatedBelief], place: LocationId) -> Option<(String, String)> {
     let wrong = believed.iter().find(|belief| {
         belief.standing == BeliefCorrectness::False && beliefs::place(session, belief.aspect) == Some(place)
     })?;
-    Some(beliefs::value(&session.kitchen, wrong.aspect, wrong.thinks).to_string())
+    Some(beliefs::contrast(&session.kitchen, wrong.aspect, wrong.thinks, wrong.truth))
 }
 
 /// Width of a benefit bar in columns; a column stands for half a saved press, or for the concept ToM a twelfth of the

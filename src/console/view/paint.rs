@@ -5,7 +5,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 
-use super::regions::below_title;
+use super::regions::inside;
 use super::theme::{TextRole, Theme};
 use crate::console::chord::KeyChord;
 use crate::console::mouse::{ClickAction, ClickTarget};
@@ -15,6 +15,8 @@ use crate::console::text_columns::{fit, width};
 pub struct Painter<'a> {
     pub buffer: &'a mut Buffer,
     pub theme: Theme,
+    /// Area of the panel that has the focus: its frame is drawn stronger.
+    pub focus: Rect,
     /// Click targets in the order in which they were drawn.
     pub targets: Vec<ClickTarget>,
 }
@@ -35,7 +37,7 @@ pub(super) fn targets(theme: Theme, size: (u16, u16), draw: impl FnOnce(&mut Pai
 
 impl Painter<'_> {
     pub fn new(buffer: &mut Buffer, theme: Theme) -> Painter<'_> {
-        Painter { buffer, theme, targets: Vec::new() }
+        Painter { buffer, theme, focus: Rect::default(), targets: Vec::new() }
     }
 
     pub fn target(&mut self, cells: Rect, action: ClickAction) {
@@ -115,26 +117,30 @@ impl Painter<'_> {
         }
     }
 
-    /// Draws the title line of a panel, with a remark at the right; returns the area below it.
+    /// Draws the frame of a panel with its title, and a remark at the right; returns the area inside.
     pub fn panel(&mut self, area: Rect, title: &str, remark: &str) -> Rect {
         self.panel_with(area, title, &[(remark, TextRole::Quiet)])
     }
 
-    /// Draws the title line of a panel, with a remark in several styles at the right; returns the area below it.
+    /// Draws the frame of a panel with its title, and a remark in several styles at the right; returns the area inside.
     pub fn panel_with(&mut self, area: Rect, title: &str, remark: &[(&str, TextRole)]) -> Rect {
-        let (line, strong) = (self.style(TextRole::Frame), self.style(TextRole::Strong));
-        let room = area.width.saturating_sub(2);
-        let rule = self.theme.signs().frame[4].repeat(usize::from(room));
-        self.text(area.x + 1, area.y, room, &rule, line);
-        let end = self.text(area.x + 1, area.y, room, title, strong);
-        self.text(end, area.y, 1, " ", line);
+        let has_focus = area.area() > 0 && area == self.focus;
+        let line = self.style(if has_focus { TextRole::Strong } else { TextRole::Frame });
+        self.frame(area, &self.theme.signs().frame, line);
+        let title = match has_focus {
+            true => format!(" {} {title} ", self.theme.signs().to),
+            false => format!(" {title} "),
+        };
+        let room = area.width.saturating_sub(4);
+        let strong = self.style(TextRole::Strong);
+        self.text(area.x + 1, area.y, room, &title, strong);
         let columns: u16 = remark.iter().map(|(text, _)| width(text)).sum();
-        if columns > 0 && width(title) + columns + 4 < room {
-            let begins = area.right() - 2 - columns;
-            self.text(begins, area.y, 1, " ", line);
+        if columns > 0 && width(&title) + columns + 2 < room {
+            let begins = area.right() - 3 - columns;
+            self.text(begins, area.y, columns + 2, &" ".repeat(usize::from(columns + 2)), line);
             self.parts(begins + 1, area.y, columns, remark);
         }
-        below_title(area)
+        inside(area)
     }
 
     /// Draws a bar of `columns`, of which a `share` from 0 to 1 is filled.

@@ -5,7 +5,9 @@ use ratatui::layout::Rect;
 use crate::console::beliefs::visibility;
 use crate::console::coding;
 use crate::console::console_model::{ConsoleModel, SenderComparisonView};
+use crate::console::kitchen_map::{KitchenMap, KitchenMapAreas, KitchenMapRows};
 use crate::console::panels::Panel;
+use tomcom_core::kitchen::Kitchen;
 use tomcom_session::Session;
 use tomcom_session::settings::WizardVisibility;
 
@@ -20,9 +22,10 @@ pub const ROOMY_COLUMNS: u16 = 112;
 pub enum ScreenSize {
     /// Small terminal (80x24): panels shrink to lines.
     Small,
-    /// Medium terminal (120x40): all panels; the list of events only in place of beliefs that the wizard may not see.
+    /// Medium terminal (120x40): panels with frames; the list of events only in place of beliefs that the wizard may not
+    /// see.
     Medium,
-    /// Large terminal (200x60): all panels and the list of events.
+    /// Large terminal (200x60): panels with frames, and the list of events.
     Large,
 }
 
@@ -33,8 +36,12 @@ pub struct PanelAreas {
     pub head: Rect,
     /// Area of the offer: one line, or two on narrow terminals.
     pub offer: Rect,
+    /// Area of the orders: what each needs, and what of it is there.
+    pub orders: Rect,
     pub kitchen: Rect,
     pub belief: Rect,
+    /// Area of the last presses with the reasons of errors.
+    pub presses: Rect,
     pub recommendation: Rect,
     /// Area of the gaze map, which is shown at full size only: the kitchen panel marks the gaze, too.
     pub gaze_map: Rect,
@@ -57,14 +64,21 @@ pub struct PanelAreas {
 const OFFER_COLUMNS: u16 = 140;
 /// Least width of the kitchen panel, in columns, at which names of usual length need no abbreviation.
 const KITCHEN_COLUMNS: u16 = 81;
-/// Height of the timeline with its title, in rows.
-const TIMELINE_ROWS: u16 = 7;
+/// Rows and columns of a panel's frame.
+const FRAME: u16 = 2;
+/// Height of the timeline without frame, in rows; on small terminals without room for all rows.
+const TIMELINE_ROWS: u16 = 6;
+const LOW_TIMELINE_ROWS: u16 = 4;
 /// Height of the list of signals on large terminals, in rows.
-const RECOMMENDATION_ROWS: u16 = 7;
-/// Least heights of the panels of display, gaze and robot, in rows.
-const SHOWN_ROWS: u16 = 4;
-const GAZE_ROWS: u16 = 3;
-const ROBOT_ROWS: u16 = 4;
+const RECOMMENDATION_ROWS: u16 = 8;
+/// Heights of the panels of display, gaze and robot, in rows.
+const SHOWN_ROWS: u16 = 5;
+const GAZE_ROWS: u16 = 4;
+const ROBOT_ROWS: u16 = 5;
+/// Least height of the last presses, in lines.
+const PRESS_LINES: u16 = 3;
+/// Least height of a wizard training's panel with its frame, in rows.
+const LESSON_ROWS: u16 = 8;
 
 /// Height in rows of a rater's error list without a panel of its own: progress, and three errors.
 const ERROR_LINES: u16 = 4;
@@ -74,11 +88,13 @@ const FEW_ERROR_LINES: (u16, u16) = (24, 2);
 /// Least width of the codebook beside the kitchen, in columns.
 const CODEBOOK_COLUMNS: u16 = 35;
 /// Rows that the codebook leaves for the error list below it, with the list's title.
-const ERRORS_ROWS: u16 = 6;
+const ERRORS_ROWS: u16 = 8;
 
-/// Numbers of rows that only some uses of the console need: coding, comparison, replay.
-#[derive(Clone, Copy, Debug, Default)]
+/// Numbers of rows that the kitchen needs, and those that only some uses of the console need: coding, comparison, replay.
+#[derive(Clone, Copy, Debug)]
 struct LineRows {
+    orders: u16,
+    kitchen: KitchenMapRows,
     /// If a rater codes errors: rows of the codebook across the screen, and in a column beside the kitchen.
     codebook: Option<[u16; 2]>,
     comparison: Option<u16>,
@@ -96,18 +112,23 @@ impl PanelAreas {
             let compact = coding::compact(keys, kitchen, size.0.saturating_sub(2)).len() as u16;
             [compact, coding::full(keys, kitchen, CODEBOOK_COLUMNS).len() as u16]
         });
-        let lines = LineRows { codebook, comparison: compared, scrubs: model.playback.is_some() };
+        let scrubs = model.playback.is_some();
+        let lines = LineRows { codebook, comparison: compared, scrubs, ..LineRows::for_kitchen(&session.kitchen) };
         let regions = PanelAreas::with(size, visibility(session, model), model.alone, lines);
         if model.lesson.is_some() { regions.teaching() } else { regions }
     }
 
-    /// Adds the wizard training's panel: below the list of events, or else above the timeline.
+    /// Adds the wizard training's panel: below the list of events, or else in place of the last presses.
     fn teaching(self) -> PanelAreas {
         match self.events.area() {
             0 if self.kitchen.area() == 0 => self,
+            _ if self.screen_size == ScreenSize::Small => {
+                PanelAreas { lesson: self.presses, presses: Rect::default(), ..self }
+            }
             0 => {
-                let (kitchen, lesson) = bottom(self.kitchen, if self.screen_size == ScreenSize::Small { 3 } else { 7 });
-                PanelAreas { kitchen, lesson, ..self }
+                let rows = self.presses.height.max(LESSON_ROWS);
+                let (kitchen, lesson) = bottom(self.kitchen.union(self.presses), rows);
+                PanelAreas { kitchen, lesson, presses: Rect::default(), ..self }
             }
             _ => {
                 let (events, lesson) = bottom(self.events, self.events.height / 2);
@@ -117,8 +138,8 @@ impl PanelAreas {
     }
 
     /// Computes the arrangement of all panels without the comparison, or of one panel at full size.
-    pub fn new(size: (u16, u16), visibility: WizardVisibility, alone: Option<Panel>) -> PanelAreas {
-        PanelAreas::with(size, visibility, alone, LineRows::default())
+    pub fn new(size: (u16, u16), kitchen: &Kitchen, visibility: WizardVisibility, alone: Option<Panel>) -> PanelAreas {
+        PanelAreas::with(size, visibility, alone, LineRows::for_kitchen(kitchen))
     }
 
     /// Computes the arrangement of panels with these additional rows.
@@ -152,8 +173,10 @@ impl PanelAreas {
             screen_size,
             head,
             offer,
+            orders: blank,
             kitchen: rest,
             belief: blank,
+            presses: blank,
             recommendation: blank,
             gaze_map: blank,
             shown: blank,
@@ -170,25 +193,22 @@ impl PanelAreas {
             footer,
         };
         let regions = match screen_size {
-            _ if let Some(panel) = alone => return bare.alone(panel),
-            ScreenSize::Small => bare.small(visibility),
-            ScreenSize::Medium => bare.medium(visibility),
-            ScreenSize::Large => bare.large(visibility),
+            _ if let Some(panel) = alone => return bare.alone(panel, lines),
+            ScreenSize::Small => bare.small(visibility, lines),
+            ScreenSize::Medium => bare.medium(visibility, lines),
+            ScreenSize::Large => bare.large(visibility, lines),
         };
-        lines.codebook.map_or(regions, |[_, rows]| regions.coding(rows + 1))
+        lines.codebook.map_or(regions, |[_, rows]| regions.coding(rows + FRAME))
     }
 
     /// Gives the codebook and the error list the areas of panels that a rater must not see: signals and estimates.
     fn coding(self, codebook_rows: u16) -> PanelAreas {
         let blank = Rect::default();
         match self.screen_size {
-            // On small terminals the robot's state and the gaze share a line, and the timeline has one row less.
+            // On small terminals the robot's state and the gaze share a line.
             ScreenSize::Small => {
-                let (_, timeline) = bottom(self.timeline, self.timeline.height.saturating_sub(1));
-                let robot = Rect { y: self.gaze.y + 1, ..self.robot };
-                let gaze = Rect { y: robot.y, ..self.shown };
-                let kitchen = Rect { height: self.kitchen.height + 2, ..self.kitchen };
-                PanelAreas { kitchen, robot, gaze, timeline, shown: blank, ..self }
+                let presses = Rect { y: self.gaze.y, height: self.presses.height + 1, ..self.presses };
+                PanelAreas { gaze: self.shown, presses, shown: blank, ..self }
             }
             ScreenSize::Medium => {
                 let (codebook, errors) = codes_and_errors(self.events.union(self.shown), codebook_rows);
@@ -202,13 +222,16 @@ impl PanelAreas {
         }
     }
 
-    fn alone(self, panel: Panel) -> PanelAreas {
+    fn alone(self, panel: Panel, lines: LineRows) -> PanelAreas {
         let blank = Rect::default();
         let body = self.kitchen;
         let mut regions = PanelAreas { kitchen: blank, screen_size: self.screen_size.max(ScreenSize::Medium), ..self };
         match panel {
-            Panel::Kitchen => regions.kitchen = body,
+            // The kitchen map has the orders above it, as the wall display has.
+            Panel::Kitchen => (regions.orders, regions.kitchen) = top(body, 2 * lines.orders + FRAME),
+            Panel::Orders => regions.orders = body,
             Panel::Belief => regions.belief = body,
+            Panel::Presses => regions.presses = body,
             Panel::Recommendation => regions.recommendation = body,
             Panel::GazeMap => regions.gaze_map = body,
             Panel::Events => regions.events = body,
@@ -221,7 +244,9 @@ impl PanelAreas {
     pub fn panel_area(&self, panel: Panel) -> Rect {
         match panel {
             Panel::Kitchen => self.kitchen,
+            Panel::Orders => self.orders,
             Panel::Belief => self.belief,
+            Panel::Presses => self.presses,
             Panel::Recommendation => self.recommendation,
             Panel::GazeMap => self.gaze_map,
             Panel::Events => self.events,
@@ -235,55 +260,61 @@ impl PanelAreas {
         if self.comparison.area() > 0 { 0 } else { rows }
     }
 
-    /// Arrangement for small terminals: panels as single lines below the kitchen, with only the worst beliefs.
-    fn small(self, visibility: WizardVisibility) -> PanelAreas {
-        let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(4));
+    /// Arrangement for small terminals: panels as lines without frames, with only the worst beliefs; the timeline only
+    /// where it leaves room for the last presses.
+    fn small(self, visibility: WizardVisibility, lines: LineRows) -> PanelAreas {
+        let (orders, rest) = top(self.kitchen, lines.orders);
         let beliefs = if rest.height >= 15 { 2 } else { 1 };
-        let (rest, belief) = bottom(rest, if visibility >= WizardVisibility::Belief { beliefs } else { 0 });
+        let beliefs = if visibility >= WizardVisibility::Belief { beliefs } else { 0 };
+        let free = rest.height.saturating_sub(2 + beliefs + lines.kitchen.least);
+        let has_timeline = free >= LOW_TIMELINE_ROWS + PRESS_LINES && self.comparison.area() == 0;
+        let (rest, timeline) = bottom(rest, if has_timeline { LOW_TIMELINE_ROWS } else { 0 });
+        // Last presses have priority over gaps in the map.
+        let presses = if has_timeline { free - LOW_TIMELINE_ROWS } else { free };
+        let (rest, presses) = bottom(rest, presses.max(1));
+        let (rest, belief) = bottom(rest, beliefs);
         let (rest, gaze) = bottom(rest, 1);
         let (kitchen, agents) = bottom(rest, 1);
         let (robot, shown) = left(agents, agents.width / 2);
-        PanelAreas { kitchen, robot, shown, gaze, belief, timeline, ..self }
+        PanelAreas { orders, kitchen, robot, shown, gaze, belief, presses, timeline, ..self }
     }
 
-    /// Arrangement for medium terminals: the kitchen at the left; beliefs, display, gaze and robot at the right.
-    fn medium(self, visibility: WizardVisibility) -> PanelAreas {
-        let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(TIMELINE_ROWS));
-        let (kitchen, side) = left(rest, (rest.width * 13 / 20).max(KITCHEN_COLUMNS));
+    /// Arrangement for medium terminals: orders, kitchen and last presses at the left; beliefs, display, gaze and robot
+    /// at the right.
+    fn medium(self, visibility: WizardVisibility, lines: LineRows) -> PanelAreas {
+        let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(TIMELINE_ROWS + FRAME));
+        let (column, side) = left(rest, (rest.width * 13 / 20).max(KITCHEN_COLUMNS));
         let (side, robot) = bottom(side, ROBOT_ROWS);
         let (side, gaze) = bottom(side, GAZE_ROWS);
         let (side, shown) = bottom(side, SHOWN_ROWS);
-        let regions = PanelAreas { kitchen, shown, robot, gaze, timeline, ..self };
+        let (orders, kitchen, presses) = lines.column(column);
+        let regions = PanelAreas { orders, kitchen, presses, shown, robot, gaze, timeline, ..self };
         match visibility {
             WizardVisibility::State => PanelAreas { events: side, ..regions },
             WizardVisibility::Belief | WizardVisibility::Recommendation => PanelAreas { belief: side, ..regions },
         }
     }
 
-    /// Arrangement for large terminals in two columns: at the left the kitchen, and below it display, gaze, robot and
-    /// the list of events; at the right beliefs and recommendations or, where the wizard may not see them, the events.
-    fn large(self, visibility: WizardVisibility) -> PanelAreas {
+    /// Arrangement for large terminals in two columns: at the left orders and kitchen, and below them last presses,
+    /// display, gaze and robot; at the right beliefs, events and recommendations, as far as the wizard may see them.
+    fn large(self, visibility: WizardVisibility, lines: LineRows) -> PanelAreas {
         // The timeline has one more row where offers are shown.
-        let rows = TIMELINE_ROWS + u16::from(visibility == WizardVisibility::Recommendation);
+        let rows = TIMELINE_ROWS + FRAME + u16::from(visibility == WizardVisibility::Recommendation);
         let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(rows));
-        let (kitchen, side) = left(rest, (rest.width * 11 / 20).max(KITCHEN_COLUMNS));
-        if visibility == WizardVisibility::State {
-            let (kitchen, below) = bottom(kitchen, SHOWN_ROWS + 1);
-            let (shown, below) = left(below, below.width / 3);
-            let (gaze, robot) = left(below, below.width / 2);
-            return PanelAreas { kitchen, shown, gaze, robot, events: side, timeline, ..self };
-        }
-        let (kitchen, below) = bottom(kitchen, (kitchen.height * 2 / 5).max(SHOWN_ROWS + GAZE_ROWS + ROBOT_ROWS));
-        let (devices, events) = left(below, below.width * 2 / 5);
-        let (devices, robot) = bottom(devices, devices.height / 3);
-        let (shown, gaze) = bottom(devices, robot.height);
-        let regions = PanelAreas { kitchen, shown, gaze, robot, events, timeline, ..self };
+        let (column, side) = left(rest, (rest.width * 11 / 20).max(KITCHEN_COLUMNS));
+        let (orders, kitchen, below) = lines.column(column);
+        let (presses, devices) = left(below, below.width * 3 / 5);
+        let (devices, robot) = bottom(devices, (devices.height / 3).max(ROBOT_ROWS));
+        let (shown, gaze) = bottom(devices, devices.height / 2);
+        let regions = PanelAreas { orders, kitchen, presses, shown, gaze, robot, timeline, ..self };
+        let (belief, events) = bottom(side, side.height / 3);
         match visibility {
+            WizardVisibility::State => PanelAreas { events: side, ..regions },
+            WizardVisibility::Belief => PanelAreas { belief, events, ..regions },
             WizardVisibility::Recommendation => {
-                let (belief, recommendation) = bottom(side, RECOMMENDATION_ROWS);
-                PanelAreas { belief, recommendation, ..regions }
+                let (belief, recommendation) = bottom(belief, RECOMMENDATION_ROWS);
+                PanelAreas { belief, recommendation, events, ..regions }
             }
-            _ => PanelAreas { belief: side, ..regions },
         }
     }
 
@@ -295,8 +326,10 @@ impl PanelAreas {
     /// Names of the console's visible panels, as recorded in the log.
     pub fn panels(&self) -> Vec<&'static str> {
         let panels = [
+            ("orders", self.orders),
             ("kitchen", self.kitchen),
             ("belief", self.belief),
+            ("presses", self.presses),
             ("recommendation", self.recommendations()),
             ("gaze_map", self.gaze_map),
             ("display", self.shown),
@@ -315,12 +348,32 @@ impl PanelAreas {
         Rect { x: self.head.x, y: top, width: self.head.width, height: bottom.saturating_sub(top) }
     }
 
-    /// Area of the kitchen panel without its title, which corresponds to the wall display.
-    pub fn kitchen_inside(&self) -> Rect {
-        match self.screen_size {
-            ScreenSize::Small => self.kitchen,
-            _ => below_title(self.kitchen),
-        }
+    /// Areas of orders and kitchen without their frames, which together correspond to the wall display.
+    pub fn kitchen_inside(&self) -> KitchenMapAreas {
+        let within = |area: Rect| match self.screen_size {
+            ScreenSize::Small => area,
+            _ => inside(area),
+        };
+        KitchenMapAreas { orders: within(self.orders), places: within(self.kitchen) }
+    }
+}
+
+impl LineRows {
+    fn for_kitchen(kitchen: &Kitchen) -> LineRows {
+        let orders = kitchen.orders.len() as u16;
+        LineRows { orders, kitchen: KitchenMap::rows(kitchen), codebook: None, comparison: None, scrubs: false }
+    }
+
+    /// Divides a column among orders, kitchen map and last presses. The last presses get what the others do not need:
+    /// two lines for an order, and a gap between the places of the map, come after the least number of presses.
+    fn column(&self, column: Rect) -> (Rect, Rect, Rect) {
+        let KitchenMapRows { least, most } = self.kitchen;
+        let spare = column.height.saturating_sub(self.orders + least + PRESS_LINES + 3 * FRAME);
+        let more_orders = self.orders.min(spare);
+        let more_kitchen = (most - least).min(spare - more_orders);
+        let (orders, rest) = top(column, self.orders + more_orders + FRAME);
+        let (kitchen, presses) = top(rest, least + more_kitchen + FRAME);
+        (orders, kitchen, presses)
     }
 }
 
@@ -330,23 +383,18 @@ fn codes_and_errors(column: Rect, codebook_rows: u16) -> (Rect, Rect) {
 }
 
 /// Height of the comparison: axis, first lane, three rows for each assistant (lane, lines between matches, statistics),
-/// differences, and a title if there is room.
+/// differences, and a frame if there is room.
 fn comparison_rows(screen_size: ScreenSize, assistants: u16) -> u16 {
     match screen_size {
         // On small terminals, only the first of the compared assistants has a row of statistics.
         ScreenSize::Small => 4 + if assistants == 1 { 2 } else { assistants },
-        ScreenSize::Medium => 4 + 3 * assistants,
-        ScreenSize::Large => 7 + 3 * assistants,
+        ScreenSize::Medium => 5 + 3 * assistants,
+        ScreenSize::Large => 8 + 3 * assistants,
     }
 }
 
 pub fn inside(area: Rect) -> Rect {
     Rect { x: area.x + 1, y: area.y + 1, width: area.width.saturating_sub(2), height: area.height.saturating_sub(2) }
-}
-
-/// Area below the title of a panel, with margins at both sides.
-pub fn below_title(area: Rect) -> Rect {
-    Rect { x: area.x + 1, y: area.y + 1, width: area.width.saturating_sub(2), height: area.height.saturating_sub(1) }
 }
 
 /// Splits off the top rows of an area, at most all of them: the rows, and the rest.

@@ -16,6 +16,9 @@ use tomcom_session::history::wording;
 use tomcom_session::settings::ArmKind;
 use tomcom_session::{Session, ShownSignal, TrialPhase, proposals};
 
+/// What the console says while the arm is slow since a hand is near.
+pub(super) const SLOW: &str = "slow: hand near";
+
 pub fn draw_robot(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.robot;
     if area.area() == 0 {
@@ -26,7 +29,7 @@ pub fn draw_robot(brush: &mut Painter, regions: &PanelAreas, session: &Session, 
         let (mut columns, mode) = (area.width.saturating_sub(11), session.robot.arm.mode);
         // Other modes than this one stand in the head line.
         if mode == SafetyMode::Reduced && !session.robot.stopped {
-            let name = format!(" {}", mode.name());
+            let name = format!(" {}", mode_words(mode));
             columns = columns.saturating_sub(name.len() as u16);
             brush.parts(area.x + 10 + columns, area.y, name.len() as u16, &[(&name, mode_role(mode))]);
         }
@@ -41,7 +44,7 @@ pub fn draw_robot(brush: &mut Painter, regions: &PanelAreas, session: &Session, 
         (false, false, Some(_)) => String::new(),
     };
     let mode = session.robot.arm.mode;
-    let name = if is_arm && !mode.is_stopped() { mode.name() } else { "" };
+    let name = if is_arm && !mode.is_stopped() { mode_words(mode) } else { "" };
     let between = if name.is_empty() || remark.is_empty() { "" } else { "  " };
     let title = if is_arm { "UR5" } else { "Robot" };
     let parts = [(name, mode_role(mode)), (between, TextRole::Quiet), (&remark, TextRole::Quiet)];
@@ -93,6 +96,11 @@ fn stopped(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session,
     brush.parts(end, y, (x + columns).saturating_sub(end), &[(&force, TextRole::Alarm), (&resume, TextRole::Text)]);
 }
 
+/// A safety mode in words; the modes in which the arm stands keep their names.
+fn mode_words(mode: SafetyMode) -> &'static str {
+    if mode == SafetyMode::Reduced { SLOW } else { mode.name() }
+}
+
 fn mode_role(mode: SafetyMode) -> TextRole {
     match mode {
         SafetyMode::Normal => TextRole::Quiet,
@@ -117,7 +125,7 @@ fn robot_line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Sessi
             Some((reason, waits_for)) => {
                 let human = &session.kitchen.buttons[Agent::Human.index()];
                 let names: Vec<&str> = waits_for.iter().map(|button| human[button.index()].name.as_str()).collect();
-                wording::idle(*reason, &names, usize::from(columns))
+                wording::idle(*reason, &names, session.robot.gave_up, usize::from(columns))
             }
             None => "no press planned".to_string(),
         };

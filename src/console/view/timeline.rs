@@ -1,4 +1,4 @@
-//! What happened, over time: the timeline, the list of events in words, and the position in a recording.
+//! What happened, over time: the timeline, and the position in a recording.
 //!
 //! The timeline is on the trial's clock, which stands during pauses: one row per kind of event, columns of half a second,
 //! the present at the right edge.
@@ -15,10 +15,9 @@ use crate::console::mouse::ClickAction;
 use crate::console::text_columns::width;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
-use tomcom_core::communication::offer::OfferKeyKind;
+use tomcom_core::communication::offer::{Offer, OfferKeyKind, TAKEN_AFTER};
 use tomcom_core::kitchen::Agent;
 use tomcom_session::event::SignalEndReason;
-use tomcom_session::history::wording;
 use tomcom_session::probes::ProbeEvent;
 use tomcom_session::replay::ReplayLandmark;
 use tomcom_session::settings::WizardVisibility;
@@ -83,18 +82,22 @@ fn has_offers(inside: Rect, session: &Session, model: &ConsoleModel) -> bool {
     inside.height > 6 && may_see && offers::are_made(session)
 }
 
+/// What the timeline says after an offer whose signal was not sent.
+const MISSED: &str = "missed";
+
 /// Draws each offer from its opening to its close: the key of its signal, then a line, in the colour of signals if the
-/// signal was sent, and a tick where the wizard accepted the offer.
+/// signal was sent, and a tick where the wizard accepted the offer; after an offer that was not used, that it was missed.
 fn offers(brush: &mut Painter, row: Rect, session: &Session, model: &ConsoleModel) {
     let back = (f64::from(model.timeline_back_s) / COLUMN_S) as i64;
     let column = |time: SessionTime| {
         let ago = columns_ago(session, model, time, COLUMN_S) - back;
         i64::from(row.right()) - 1 - ago
     };
-    let closed = session.offers.closed().iter().map(|closed| (&closed.offer, closed.closed));
-    let open = session.offers.unclosed().map(|offer| (offer, model.now));
+    let closed = session.offers.closed().iter().map(|closed| (&closed.offer, closed.closed, true));
+    let open = session.offers.unclosed().map(|offer| (offer, model.now, false));
     let signs = brush.theme.signs();
-    for (offer, end) in closed.chain(open).filter(|(offer, _)| offer.advice.visible && offer.opened <= model.now) {
+    let is_seen = |offer: &Offer| offer.advice.visible && offer.opened <= model.now;
+    for (offer, end, is_closed) in closed.chain(open).filter(|(offer, ..)| is_seen(offer)) {
         let (from, to) = (column(offer.opened), column(end.min(model.now)));
         if to < i64::from(row.x) || from >= i64::from(row.right()) {
             continue;
@@ -111,6 +114,12 @@ fn offers(brush: &mut Painter, row: Rect, session: &Session, model: &ConsoleMode
                 _ => signs.frame[4],
             };
             brush.text(at as u16, row.y, 1, sign, style);
+        }
+        // While the key still takes a closed offer, the offer is not missed. The next offer is drawn over the word.
+        let is_missed = is_closed && used.is_none() && session.age(end, model.now) > TAKEN_AFTER;
+        let after = to + 2;
+        if is_missed && after >= i64::from(row.x) && after < i64::from(row.right()) {
+            brush.text(after as u16, row.y, row.right() - after as u16, MISSED, style);
         }
     }
 }
@@ -218,7 +227,7 @@ fn mark(
         TimelineEvent::Press { agent, no_effect, .. } => {
             let row = if *agent == Agent::Human { 1 } else { 2 };
             let role = if *agent == Agent::Human { TextRole::Human } else { TextRole::Robot };
-            match (model.is_error(entry), no_effect.is_none()) {
+            match (model.error(entry).is_some(), no_effect.is_none()) {
                 (true, _) => (row, signs.error.to_string(), TextRole::Strong),
                 (false, false) => (row, signs.no_effect.to_string(), role),
                 (false, true) => (row, signs.press.to_string(), role),
@@ -314,42 +323,5 @@ pub fn draw_position(brush: &mut Painter, regions: &PanelAreas, session: &Sessio
         let share = f64::from(column) / f64::from(columns.saturating_sub(1).max(1));
         let time = SessionTime::from_secs_f64(length_s * share);
         brush.target(Rect { x: x + column, width: 1, ..area }, ClickAction::Seek(time));
-    }
-}
-
-/// Columns for the name of the agent; the longest is "assistant".
-const WHO: u16 = 10;
-
-pub fn draw_events(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
-    if regions.events.area() == 0 {
-        return;
-    }
-    let remark = match model.events_back {
-        0 => "newest event first".to_string(),
-        back => format!("{back} newer events hidden"),
-    };
-    let inside = brush.panel(regions.events, "Events", &remark);
-    let clock = session.trial_clock(model.now);
-    let newest = session.timeline.iter().rev().skip(model.events_back);
-    for (row, entry) in newest.take(usize::from(inside.height)).enumerate() {
-        let y = inside.y + row as u16;
-        let at = (clock - session.age(entry.time, model.now)).to_string();
-        let (who, what) = wording::happening(&session.kitchen, &entry.what);
-        let is_error = model.is_error(entry);
-        let role = match &entry.what {
-            TimelineEvent::Press { agent: Agent::Human, .. } => TextRole::Human,
-            TimelineEvent::Press { agent: Agent::Robot, .. } => TextRole::Robot,
-            TimelineEvent::Signal { .. } | TimelineEvent::SignalEnded(_) => TextRole::Signal,
-            TimelineEvent::RobotStopped | TimelineEvent::ArmStopped { .. } => TextRole::Alarm,
-            TimelineEvent::ArmTouched { .. } => TextRole::Robot,
-            _ => TextRole::Strong,
-        };
-        let quiet = brush.style(TextRole::Quiet);
-        brush.text_right(inside.x + 6, y, 6, &at, quiet);
-        let x = inside.x + 7;
-        let columns = inside.right().saturating_sub(x + WHO);
-        brush.parts(x, y, WHO - 1, &[(who, role)]);
-        let mark = if is_error { format!("{} ", brush.theme.signs().error) } else { String::new() };
-        brush.parts(x + WHO, y, columns, &[(&mark, TextRole::Strong), (&what, TextRole::Text)]);
     }
 }

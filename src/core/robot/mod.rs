@@ -58,7 +58,7 @@ impl AbortReason {
             AbortReason::OutOfReach => "out of reach",
             AbortReason::Singular => "its arm would be stretched",
             AbortReason::Obstructed => "something stands in the way",
-            AbortReason::HandInTheWay => "a hand is in the way",
+            AbortReason::HandInTheWay => "hand in the way",
             AbortReason::NoClick => "the button does not click",
             AbortReason::Contact => "somebody touched the arm",
             AbortReason::Fault => "a joint is at fault",

@@ -7,6 +7,7 @@ use crate::console::console_model::NoticeLevel;
 use crate::console::console_model::RecordingStatus;
 use crate::run::doctor::free_bytes;
 use tomcom_session::history::belief_track::{self, BeliefSnapshot};
+use tomcom_session::history::error_reasons::ExplainedError;
 use tomcom_session::history::wording;
 use tomcom_session::log::{LogWriter, RecordingWriteError};
 use tomcom_session::probes::ProbeEvent;
@@ -55,8 +56,8 @@ impl Live {
             }
         }
         let judged = self.engine.judged();
-        let new = judged[self.judged..].iter().filter(|press| press.verdict.error).map(|press| press.time);
-        self.model.errors.extend(new);
+        let kitchen = &self.engine.session().kitchen;
+        self.model.errors.extend(ExplainedError::among(kitchen, &judged[self.judged..]));
         self.model.unproven += judged[self.judged..].iter().filter(|press| !press.verdict.is_proven).count() as u64;
         self.judged = judged.len();
         if let Some(viewing) = &mut self.viewing {

@@ -34,7 +34,10 @@ impl Review {
             ReplayAction::On(what) => self.look_for(what, true),
             ReplayAction::BackTo(what) => self.look_for(what, false),
             ReplayAction::ToStart => self.stand_at(0),
-            ReplayAction::ToEvent(number) => self.stand_at(number as usize + 1),
+            ReplayAction::ToEvent(number) => {
+                self.stand_at(number as usize + 1);
+                self.name_landmark(ReplayLandmark::Error);
+            }
             ReplayAction::ToTime(time) => self.seek(time),
             ReplayAction::SeekForward => self.seek(self.now + SEEK),
             ReplayAction::SeekBack => self.seek(self.now - SEEK),
@@ -63,16 +66,21 @@ impl Review {
     /// Moves the replay to the next or previous landmark of this kind, if there is one.
     fn look_for(&mut self, what: ReplayLandmark, forward: bool) {
         match self.film.landmark(what, forward) {
-            Some(found) => {
-                self.stand_at(found.position);
-                let told = self.film.told(what).map_or(String::new(), |told| format!(": {told}"));
-                let said = format!("{} {} of {}{told}", what.name(), found.number, found.of);
-                self.model.say(NoticeLevel::Done, said);
+            Some(position) => {
+                self.stand_at(position);
+                self.name_landmark(what);
             }
             None => {
                 let which = if forward { "later" } else { "earlier" };
                 self.model.say(NoticeLevel::Refused, format!("the recording has no {which} {}", what.name()));
             }
+        }
+    }
+
+    /// Says which landmark of this kind the replay stands at, if it stands at one, and what it is.
+    fn name_landmark(&mut self, what: ReplayLandmark) {
+        if let Some(said) = self.film.named(what) {
+            self.model.say(NoticeLevel::Done, said);
         }
     }
 

@@ -20,6 +20,7 @@ use tomcom_core::kitchen::{Agent, ButtonAction, ButtonId, Dish, Kitchen, Locatio
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::ErrorCause;
 use tomcom_core::measures::raters::{ErrorCauseCode, ErrorCauseKind};
+use tomcom_core::robot::AbortReason;
 use tomcom_core::robot::ArmPhase;
 use tomcom_core::robot::IdleReason;
 use tomcom_core::robot::SafetyMode;
@@ -29,9 +30,9 @@ pub fn button(kitchen: &Kitchen, agent: Agent, id: tomcom_core::kitchen::ButtonI
     kitchen.button(agent, id).name.replace('_', " ")
 }
 
-/// What the robot waits for; `waits_for`: names of the human's buttons. In shorter words if the sentence has more signs
-/// than `most`, so that the buttons can be read.
-pub fn idle(reason: IdleReason, waits_for: &[impl AsRef<str>], most: usize) -> String {
+/// What the robot waits for; `waits_for`: names of the human's buttons; `gave_up`: why it gave up its last useful press,
+/// if that is known. In shorter words if the sentence has more signs than `most`, so that the buttons can be read.
+pub fn idle(reason: IdleReason, waits_for: &[impl AsRef<str>], gave_up: Option<AbortReason>, most: usize) -> String {
     let buttons: Vec<String> = waits_for.iter().map(|name| name.as_ref().replace('_', " ")).collect();
     match reason {
         IdleReason::NoOrder => "waits for an order".to_string(),
@@ -41,7 +42,11 @@ pub fn idle(reason: IdleReason, waits_for: &[impl AsRef<str>], most: usize) -> S
             let told = format!("waits until the human presses {buttons}");
             if told.chars().count() <= most { told } else { format!("human's turn: {buttons}") }
         }
-        IdleReason::Skipped => "waits: its press was skipped".to_string(),
+        IdleReason::Skipped => match gave_up {
+            Some(AbortReason::Skipped) => "waits: the wizard skipped its press".to_string(),
+            Some(reason) => format!("gave up: {}", reason.words()),
+            None => "waits: its press was given up".to_string(),
+        },
     }
 }
 

@@ -65,7 +65,9 @@ pub fn line(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<St
             format!("robot sets out for {}{}", said(button), if *initiative { ", by its own initiative" } else { "" })
         }
         Event::RobotAborts { button, reason } => format!("robot gives up {}: {}", said(button), reason.words()),
-        Event::RobotIdles { reason, waits_for } => format!("robot {}", wording::idle(*reason, waits_for, usize::MAX)),
+        Event::RobotIdles { reason, waits_for } => {
+            format!("robot {}", wording::idle(*reason, waits_for, None, usize::MAX))
+        }
         // Changes between normal and reduced speed get no line: the arm slows near the hand and speeds up again too
         // often.
         Event::RobotSafety { mode: SafetyMode::Normal | SafetyMode::Reduced, .. } => return None,

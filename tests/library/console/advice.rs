@@ -11,6 +11,7 @@ use tomcom::console::console_model::{TrainingFeedback, TrainingPanel};
 use tomcom::console::panels::Panel;
 use tomcom::console::panels::screen;
 use tomcom::console::view::theme::{TerminalBackground, TextRole, Theme};
+use tomcom_core::communication::offer::OfferCloseReason;
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption, SignalReason};
 use tomcom_core::measures::matching::CommunicationEvent;
 use tomcom_session::history::belief_track;
@@ -92,16 +93,15 @@ fn the_offer_alone_is_inverse_in_the_colour_of_signals() {
 
 #[test]
 fn an_offer_says_what_is_believed_what_is_true_and_what_it_saves() {
-    let words =
-        ["thinks salmon nigiri, is tuna nigiri", "83 % for 0:0", "next error: take salmon", "saves ≈ 4 presses"];
+    let words = ["thinks cut salmon, needs cut tuna", "83 % for 0:0", "next error: take salmon", "saves ≈ 4 presses"];
     advised(true).shows_everywhere(&words);
 }
 
 #[test]
 fn a_belief_has_one_certainty_on_the_screen() {
     for (held, p, words) in [
-        ("shrimp nigiri", 0.44, "may think shrimp nigiri, is tuna nigiri · 44 % for 0:0"),
-        ("shrimp nigiri", 0.71, "thinks shrimp nigiri, is tuna nigiri · 71 % for 0:0"),
+        ("shrimp nigiri", 0.44, "may think cut shrimp, needs cut tuna · 44 % for 0:0"),
+        ("shrimp nigiri", 0.71, "thinks cut shrimp, needs cut tuna · 71 % for 0:0"),
     ] {
         let mut stage = advised(true);
         stage.estimate(&[("recipe of tuna nigiri", held, p)], false);
@@ -121,19 +121,20 @@ fn of_an_unsure_belief_the_likeliest_wrong_value_is_named() {
     let kitchen = stage.session.kitchen.clone();
     let aspect = kitchen.aspects.iter().find(|aspect| aspect.name == "recipe of tuna nigiri").expect("an aspect");
     let wrong = aspect.labels.iter().position(|label| label != "tuna nigiri").expect("another recipe");
-    // The others are equally probable: the first is named.
-    let (thinks, p) = (&aspect.wordings[wrong], format!("{:.0} %", 54.0 / (aspect.labels.len() - 1) as f64));
+    // The others are equally probable: the first is named, by the ingredient that differs.
+    assert_eq!(aspect.labels[wrong], "salmon nigiri");
+    let (thinks, p) = ("cut salmon", format!("{:.0} %", 54.0 / (aspect.labels.len() - 1) as f64));
     stage.model.belief_focus = Some(kitchen.aspect_named("recipe of tuna nigiri").expect("an aspect"));
     for size in SIZES {
         for alone in [None, Some(Panel::Belief)] {
             stage.model.alone = alone;
             let screen = stage.screen(size);
-            let offer = format!("may think {thinks}, is tuna nigiri · {p} for");
+            let offer = format!("may think {thinks}, needs cut tuna · {p} for");
             assert!(screen.contains(&offer), "{offer} at {size:?}:\n{screen}");
-            assert!(!screen.contains("may think tuna nigiri"), "{size:?}:\n{screen}");
+            assert!(!screen.contains("may think cut tuna"), "{size:?}:\n{screen}");
             let list = match alone {
                 None => format!("unsure, may think {thinks}"),
-                Some(_) => format!("recipe of order 1: may think {thinks} {p}, is tuna nigiri"),
+                Some(_) => format!("recipe of order 1: may think {thinks} {p}, needs cut tuna"),
             };
             // On a small screen the title of the chart says only what is true.
             let is_named = screen.contains(&list) && screen.contains(&format!(" {p} "));
@@ -151,40 +152,52 @@ fn offer_lines(stage: &Stage, size: (u16, u16)) -> Vec<String> {
 }
 
 #[test]
-fn where_no_signal_is_offered_the_line_says_what_was_sent_or_why() {
-    let check = |stage: &Stage, first: &str, second: &str| {
+fn while_nothing_is_offered_the_line_changes_only_with_the_beliefs() {
+    let check = |stage: &Stage, words: &str| {
         for size in SIZES {
-            let (first, second) = (first.to_string(), second.to_string());
-            let lines = match size.0 {
-                200 if !second.is_empty() => vec![format!("{first}; {second}")],
-                _ => [first, second].into_iter().filter(|line| !line.is_empty()).collect(),
-            };
-            assert_eq!(offer_lines(stage, size), lines, "{size:?}");
+            assert_eq!(offer_lines(stage, size), [words], "{size:?}");
+            let drawn = stage.drawn(size);
+            let grey = Theme::colour(TerminalBackground::Dark, TextRole::Quiet).map(Color::Indexed);
+            let row = &drawn.buffer().content[usize::from(size.0)..2 * usize::from(size.0)];
+            assert!(row.iter().filter(|cell| cell.symbol() != " ").all(|cell| Some(cell.fg) == grey), "quietly");
         }
     };
     let recipe = |order: &str| Signal::ShowRecipe(order.to_string());
     let sent = |order| Event::SignalShown { by: Sender::Wizard, signal: recipe(order), offer: None };
     let mut stage = advised(false);
-    // No signal saves anything, and that about the false belief can be sent again.
-    let advice = stage.session.advice.as_mut().expect("advice");
-    advice.options.iter_mut().for_each(|option| option.benefit = 0.0);
-    check(&stage, "3 false beliefs", "");
-    let options = advice_without(&stage, &recipe("order_1"));
-    stage.session.advice = Some(options);
-    check(&stage, "3 false beliefs", "recipe of order 1 was sent and is not repeated yet");
+    let wrong = "nothing worth saying; 3 false beliefs";
+    check(&stage, wrong);
     stage.at(23.0, sent("order_2"));
-    check(&stage, "On the display: recipe of order 2", "3 false beliefs");
+    check(&stage, wrong);
     stage.at(23.2, Event::SignalEnded { reason: SignalEndReason::TakenBack });
-    check(&stage, "3 false beliefs", "signals need 0.5 s between them");
-    stage.wait(1.0);
-    check(&stage, "3 false beliefs", "recipe of order 2 was sent and is not repeated yet");
+    check(&stage, wrong);
+    let right = [("recipe of tuna nigiri", "tuna nigiri", 0.99), ("robot_hand", "tuna cut", 0.99)];
+    stage.estimate(&right, false);
+    check(&stage, "nothing worth saying; 1 false belief");
+    stage.estimate(&[("order_2", "crab maki", 0.99)], false);
+    check(&stage, "nothing worth saying");
 }
 
-/// The latest recommendation, without a signal.
-fn advice_without(stage: &Stage, signal: &Signal) -> Recommendation {
-    let mut advice = stage.session.advice.clone().expect("advice");
-    advice.options.retain(|option| option.signal != *signal);
-    advice
+#[test]
+fn a_closed_offer_fades_while_it_can_be_taken_and_is_told_in_the_timeline_then() {
+    let mut stage = advised(true);
+    let offer = stage.session.offers.open().map(|offer| offer.seq).expect("an offer");
+    stage.at(26.0, Event::OfferClosed { offer, reason: OfferCloseReason::Fell });
+    stage.wait(1.0);
+    stage.shows_everywhere(&["recipe of order 1: no longer worth it; enter still sends it"]);
+    stage.hides((200, 60), &["missed"]);
+    stage.wait(0.5);
+    stage.shows_everywhere(&["nothing worth saying; 3 false beliefs"]);
+    stage.shows((200, 60), &["q─────── missed"]);
+}
+
+#[test]
+fn an_offer_says_which_signal_on_the_display_it_would_replace() {
+    let mut stage = advised(true);
+    stage.hides((200, 60), &["replaces"]);
+    let signal = Signal::Highlight("cutting_board".to_string());
+    stage.at(22.6, Event::SignalShown { by: Sender::Wizard, signal, offer: None });
+    stage.shows_everywhere(&["replaces highlight cutting board"]);
 }
 
 #[test]
@@ -209,22 +222,6 @@ fn enter_is_named_only_where_it_sends() {
     stage.session.spec.trial.condition = Condition::None;
     stage.wait(1.0);
     assert!(!hints(&stage) && !names(&stage), "nobody may send:\n{}", stage.screen((200, 60)));
-}
-
-#[test]
-fn the_offers_line_says_that_no_signal_is_worth_its_cost() {
-    let stage = advised(false);
-    let (wrong, best) = ("3 false beliefs", "no signal is worth its cost");
-    let both = format!("{wrong}; {best}");
-    for (size, lines) in SIZES.into_iter().zip([vec![wrong, best], vec![wrong, best], vec![both.as_str()]]) {
-        let screen = stage.screen(size);
-        let offer = screen.lines().skip(1).take(lines.len()).map(|line| line.trim_matches('"').trim());
-        assert_eq!(offer.collect::<Vec<_>>(), lines, "{size:?}");
-        let drawn = stage.drawn(size);
-        let grey = Theme::colour(TerminalBackground::Dark, TextRole::Quiet).map(Color::Indexed);
-        let row = &drawn.buffer().content[usize::from(size.0)..2 * usize::from(size.0)];
-        assert!(row.iter().filter(|cell| cell.symbol() != " ").all(|cell| Some(cell.fg) == grey), "quietly");
-    }
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The mouse and pasted text: clicks do what keys do, the pointer is a place on the display, a paste is text and no keys.
 
 use crossterm::event::KeyCode;
+use ratatui::layout::Rect;
 use tomcom::console::console_model::Dialog;
 use tomcom::console::console_model::{Playback, ReplayAction};
 use tomcom::console::kitchen_map::KitchenMap;
@@ -205,8 +206,11 @@ fn the_scrub_bar_and_the_timeline_seek_in_a_replay() {
         assert_eq!(seek(11, row), 0.0);
         let [early, late] = [20, 35].map(|column| seek(column, row));
         assert!(0.0 < early && early < late && late < 40.0, "{early} {late}");
+        if size == SIZES[0] {
+            continue;
+        }
         // The timeline ends at the present; ten columns are five seconds.
-        let right = if size.0 == 80 { size.0 - 2 } else { size.0 - 3 };
+        let right = size.0 - 3;
         let [then, now] = [right - 10, right].map(|column| seek(column, row - 2));
         assert!((now - then - 5.0).abs() < 0.6 && (now - 22.6).abs() < 0.6, "{then} {now}");
     }
@@ -235,15 +239,16 @@ fn every_place_of_the_panel_is_its_place_on_the_display_and_back() {
     for name in ["sushi", "burger"] {
         let kitchen = kitchen(name);
         for size in SIZES {
-            let panel = PanelAreas::new(size, WizardVisibility::Recommendation, None).kitchen_inside();
-            let plan = KitchenMap::new(&kitchen, panel, size.0 == 120);
+            let areas = PanelAreas::new(size, &kitchen, WizardVisibility::Recommendation, None).kitchen_inside();
+            let plan = KitchenMap::new(&kitchen, areas, size.0 == 120);
             assert_eq!(plan.spots.len(), kitchen.locations.len() + kitchen.storages.len());
             for spot in &plan.spots {
                 let area = match spot.thing {
                     KitchenMapElement::Location(id) => kitchen.location(id).display,
                     KitchenMapElement::Storage(index) => kitchen.storages[index].display,
                 };
-                assert_eq!(panel.union(spot.cells), panel, "{name} {size:?}: inside of the panel");
+                let is_inside = |panel: Rect| panel.union(spot.cells) == panel;
+                assert!(is_inside(areas.orders) || is_inside(areas.places), "{name} {size:?}: inside of a panel");
                 for (x, y) in [(spot.cells.x, spot.cells.y), (spot.cells.right() - 1, spot.cells.bottom() - 1)] {
                     let point = plan.display_point(x, y);
                     let distance_m = area.distance_m(point, kitchen.display_m);
@@ -262,7 +267,7 @@ fn every_place_of_the_panel_is_its_place_on_the_display_and_back() {
 #[test]
 fn a_click_beside_the_keys_explains_a_place_or_shows_a_panel_and_the_wheel_goes_back_in_time() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    let regions = PanelAreas::new((120, 40), WizardVisibility::Recommendation, None);
+    let regions = PanelAreas::new((120, 40), &stage.session.kitchen, WizardVisibility::Recommendation, None);
     let plan = KitchenMap::new(&stage.session.kitchen, regions.kitchen_inside(), false);
     for spot in &plan.spots {
         let KitchenMapElement::Location(location) = spot.thing else { continue };

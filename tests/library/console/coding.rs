@@ -87,7 +87,8 @@ fn every_code_has_its_key_in_every_panel_and_no_key_tells_what_is_estimated() {
     let mut stage = rater(RaterCodes::default());
     for _ in 0..5 {
         stage.wait(1.0);
-        stage.key(KeyCode::Tab);
+        stage.control('w');
+        stage.control('o');
         stage.shows((80, 24), &["1 slip", "2 race", "3 other", "4 mixed up buttons", "q order 1", "m rolling mat"]);
     }
     let tells = |action: &KeyAction| *action == KeyAction::Belief || matches!(action, KeyAction::Differ(_));

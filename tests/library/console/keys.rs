@@ -229,7 +229,7 @@ fn the_participant_at_the_keyboard_sees_no_estimate() {
     assert_eq!(stage.notice(), "beliefs are not shown in this session");
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Tab), None);
-    assert!(stage.screen((120, 40)).contains("thinks salmon nigiri"), "the wizard's keys bring it back");
+    assert!(stage.screen((120, 40)).contains("thinks cut salmon"), "the wizard's keys bring it back");
 }
 
 #[test]

@@ -20,6 +20,7 @@ use tomcom::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings,
 use tomcom_core::mind::dirichlet::{Dirichlet, DirichletBelief};
 use tomcom_core::mind::model::PriorModel;
 use tomcom_session::history::belief_track::BeliefSnapshot;
+use tomcom_session::history::error_reasons::ExplainedError;
 use tomcom_session::{apply, offers};
 
 use crate::support::*;
@@ -140,7 +141,13 @@ impl Stage {
             21.8,
             Event::SignalShown { by: Sender::Wizard, signal: Signal::ShowRecipe("order_1".to_string()), offer: None },
         );
-        stage.model.errors = [15.0, 21.0].map(at).to_vec();
+        let error = |seconds, press: &str, why: &str| ExplainedError {
+            time: at(seconds),
+            press: press.to_string(),
+            why: why.to_string(),
+        };
+        stage.model.errors =
+            vec![error(15.0, "trash", "the hand is empty"), error(21.0, "take salmon", "order 1 needs tuna")];
         stage.model.now = at(22.6);
         stage
     }

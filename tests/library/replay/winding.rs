@@ -115,9 +115,11 @@ fn a_blinded_replay_shows_no_signal_and_the_same_kitchen() {
     assert_eq!(open.errors, blind.errors);
     assert_eq!(blind.landmark(ReplayLandmark::Signal, false), None);
     let signal = open.landmark(ReplayLandmark::Signal, false).expect("a signal");
-    open.wind(signal.position);
-    let told = open.told(ReplayLandmark::Signal).expect("a signal");
-    assert!(signal.number == signal.of && told.ends_with(", by the wizard"), "{signal:?} {told}");
+    open.wind(signal);
+    let named = open.named(ReplayLandmark::Signal).expect("a signal");
+    let number = open.landmarks(ReplayLandmark::Signal).len();
+    assert!(named.starts_with(&format!("signal {number} of {number}: ")), "{named}");
+    assert!(named.ends_with(", by the wizard"), "{named}");
     // Steps do not stop where something is hidden.
     let steps = |film: &mut SeekableReplay| {
         film.wind(0);
@@ -135,27 +137,28 @@ fn a_replay_goes_from_one_error_signal_or_false_belief_to_the_next_and_back() {
     let out = simulated("default.toml", ArmKind::Timed, "landmarks", 1, 4);
     let recording = only_recording(&out);
     let mut film = SeekableReplay::open(&recording).expect("a recording");
-    let mut errors = film.errors.clone();
+    let mut errors: Vec<SessionTime> = film.errors.iter().map(|error| error.time).collect();
     errors.dedup();
     assert!(errors.len() > 2, "{errors:?}");
     let mut visited = Vec::new();
-    while let Some(found) = film.landmark(ReplayLandmark::Error, true) {
-        film.wind(found.position);
+    while let Some(position) = film.landmark(ReplayLandmark::Error, true) {
+        film.wind(position);
         visited.push(film.time());
-        assert_eq!((found.number, found.of), (visited.len(), errors.len()));
-        let told = film.told(ReplayLandmark::Error).expect("an error");
-        assert!(told.split_once(": ").is_some_and(|(press, why)| !press.is_empty() && !why.is_empty()), "{told}");
+        let named = film.named(ReplayLandmark::Error).expect("an error");
+        assert!(named.starts_with(&format!("error {} of {}: ", visited.len(), errors.len())), "{named}");
+        assert!(named.split(": ").count() > 2, "press and reason: {named}");
     }
     assert_eq!(visited, errors);
     let back = film.landmark(ReplayLandmark::Error, false).expect("the error before");
-    film.wind(back.position);
+    film.wind(back);
     assert_eq!(film.time(), errors[errors.len() - 2]);
     assert_eq!(film.landmark(ReplayLandmark::Signal, true), None, "nobody sends signals");
     film.wind(0);
     let wrong = film.landmark(ReplayLandmark::FalseBelief, true).expect("something is believed wrong");
-    film.wind(wrong.position);
-    let told = film.told(ReplayLandmark::FalseBelief).expect("something is believed wrong");
-    assert!(wrong.number == 1 && told.contains(": thinks ") && told.contains(", is "), "{told}");
+    film.wind(wrong);
+    let named = film.named(ReplayLandmark::FalseBelief).expect("something is believed wrong");
+    assert!(named.starts_with("false belief 1 of "), "{named}");
+    assert!(named.contains(": thinks ") && named.contains(", is "), "{named}");
     let moment = film.beliefs.until(film.time()).last().expect("an estimate");
     assert!(moment.held.iter().any(|held| held.is_false()), "{moment:?}");
 }

@@ -23,8 +23,8 @@ fn check_by_hand(session: &str) {
     terminal.begin();
     terminal.key("Tab");
     terminal.see("KEYS: PARTICIPANT");
-    let panel = PanelAreas::new(SIZE, WizardVisibility::Recommendation, None).kitchen_inside();
-    let plan = KitchenMap::new(&kitchen, panel, true);
+    let areas = PanelAreas::new(SIZE, &kitchen, WizardVisibility::Recommendation, None).kitchen_inside();
+    let plan = KitchenMap::new(&kitchen, areas, true);
     let mut cost = CostToGo::new(kitchen.clone());
     let mut replay = RecordingReplay::open(&terminal.recording()).expect("it opens while it is written");
     let recipes = kitchen.true_recipes();

@@ -1,0 +1,100 @@
+//! What happened, in words: the last presses with the reasons of errors, and the list of all events.
+
+use super::paint::Painter;
+use super::regions::{PanelAreas, ScreenSize};
+use super::theme::TextRole;
+use crate::console::console_model::ConsoleModel;
+use crate::console::key_action::KeyLayer;
+use crate::console::text_columns::width;
+use ratatui::layout::Rect;
+use tomcom_core::kitchen::Agent;
+use tomcom_session::history::wording;
+use tomcom_session::{Session, TimelineEntry, TimelineEvent};
+
+/// Columns of the time on the trial's clock, and of the name of whoever acted: the longest is "assistant".
+const CLOCK: u16 = 7;
+const WHO: u16 = 10;
+/// Columns of the labels of panels that are lines, on small terminals.
+const LABEL: u16 = 10;
+
+/// Draws the last presses, the newest first.
+pub fn draw_presses(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
+    let area = regions.presses;
+    if area.area() == 0 {
+        return;
+    }
+    let inside = match regions.screen_size {
+        ScreenSize::Small => {
+            brush.parts(area.x, area.y, LABEL, &[(" presses", TextRole::Quiet)]);
+            // The clock is right-aligned in columns that include the gap before it.
+            Rect { x: area.x + LABEL - 1, width: area.width.saturating_sub(LABEL - 1), ..area }
+        }
+        _ => brush.panel(area, "Last presses", &hidden(model, "newest first")),
+    };
+    let is_press = |what: &TimelineEvent| matches!(what, TimelineEvent::Press { .. });
+    rows(brush, inside, session, model, is_press);
+}
+
+/// Draws the list of all events, the newest first.
+pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
+    if regions.events.area() == 0 {
+        return;
+    }
+    let inside = brush.panel(regions.events, "Events", &hidden(model, "newest event first"));
+    rows(brush, inside, session, model, |_| true);
+}
+
+fn hidden(model: &ConsoleModel, newest: &str) -> String {
+    match model.events_back {
+        0 => newest.to_string(),
+        back => format!("{back} newer events hidden"),
+    }
+}
+
+fn rows(
+    brush: &mut Painter,
+    inside: Rect,
+    session: &Session,
+    model: &ConsoleModel,
+    is_listed: impl Fn(&TimelineEvent) -> bool,
+) {
+    let newest = session.timeline.iter().rev().skip(model.events_back).filter(|entry| is_listed(&entry.what));
+    for (entry, y) in newest.zip(inside.rows().map(|row| row.y)) {
+        row(brush, Rect { y, height: 1, ..inside }, session, model, entry);
+    }
+}
+
+fn row(brush: &mut Painter, line: Rect, session: &Session, model: &ConsoleModel, entry: &TimelineEntry) {
+    let at = (session.trial_clock(model.now) - session.age(entry.time, model.now)).to_string();
+    let (who, what) = wording::happening(&session.kitchen, &entry.what);
+    let role = match &entry.what {
+        TimelineEvent::Press { agent: Agent::Human, .. } => TextRole::Human,
+        TimelineEvent::Press { agent: Agent::Robot, .. } => TextRole::Robot,
+        TimelineEvent::Signal { .. } | TimelineEvent::SignalEnded(_) => TextRole::Signal,
+        TimelineEvent::RobotStopped | TimelineEvent::ArmStopped { .. } => TextRole::Alarm,
+        TimelineEvent::ArmTouched { .. } => TextRole::Robot,
+        _ => TextRole::Strong,
+    };
+    let quiet = brush.style(TextRole::Quiet);
+    brush.text_right(line.x + CLOCK - 1, line.y, CLOCK - 1, &at, quiet);
+    let x = line.x + CLOCK;
+    brush.parts(x, line.y, WHO - 1, &[(who, role)]);
+    let x = x + WHO;
+    let columns = line.right().saturating_sub(x + 1);
+    // The reason of an error tells a recipe, which whoever plays the participant at this keyboard has to remember.
+    let Some(error) = model.error(entry).filter(|_| model.layer == KeyLayer::Wizard) else {
+        brush.parts(x, line.y, columns, &[(&what, TextRole::Text)]);
+        return;
+    };
+    // The reason has priority over what the press took or made.
+    let mark = format!("{} ", brush.theme.signs().error);
+    let whole = match what.contains(&error.why) {
+        true => error.press.clone(),
+        false => what,
+    };
+    let fits = width(&mark) + width(&whole) + 2 + width(&error.why) <= columns;
+    let pressed: &str = if fits { &whole } else { &error.press };
+    let parts = [(mark.as_str(), TextRole::Strong), (pressed, TextRole::Text), (": ", TextRole::Quiet)];
+    let end = brush.parts(x, line.y, columns, &parts);
+    brush.parts(end, line.y, (x + columns).saturating_sub(end), &[(&error.why, TextRole::Strong)]);
+}

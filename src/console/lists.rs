@@ -64,11 +64,12 @@ impl ListCursor {
     }
 
     /// Indices of the rows with these texts that match the filter, the best one first. Only the best kind of match is
-    /// kept, so that a whole code leaves its own row: each typed word begins a word; or the row has the typed letters
-    /// in one piece, signs and spaces left out; or it has them in their order.
+    /// kept, so that a whole code leaves its own row: each typed word begins a word; or a line of the row's text has the
+    /// typed letters in one piece, signs and spaces left out; or it has them in their order.
     pub fn found(&self, rows: impl Iterator<Item = String>) -> Vec<usize> {
         let typed = self.filter.to_lowercase();
         let scattered = SkimMatcherV2::default();
+        let joined = |line: &str| line.chars().filter(|letter| letter.is_alphanumeric()).collect::<String>();
         let rank = |text: String| {
             let text = text.to_lowercase();
             let words = || text.split(|letter: char| !letter.is_alphanumeric());
@@ -81,8 +82,11 @@ impl ListCursor {
                 () if has(&|word, typed| word.starts_with(typed)) == all => {
                     Some((0, (all - has(&|word, typed| word == typed)) as i64))
                 }
-                () if words().collect::<String>().contains(&letters) => Some((1, 0)),
-                () => scattered.fuzzy_match(&text, &letters).map(|score| (2, -score)),
+                () if text.lines().any(|line| joined(line).contains(&letters)) => Some((1, 0)),
+                () => {
+                    let scores = text.lines().filter_map(|line| scattered.fuzzy_match(line, &letters));
+                    scores.max().map(|score| (2, -score))
+                }
             }
         };
         let mut found: Vec<_> = rows.enumerate().filter_map(|(index, text)| Some((rank(text)?, index))).collect();
@@ -287,7 +291,7 @@ pub fn actions<'a>(model: &'a ConsoleModel, cursor: &ListCursor) -> Vec<&'a KeyB
     if cursor.filter.is_empty() {
         active.sort_by_key(|line| (model.palette_first.as_ref() != Some(&line.action), ends(&line.action)));
     }
-    let words = active.iter().map(|line| format!("{} {} {}", line.help, line.group, synonyms(&line.action)));
+    let words = active.iter().map(|line| format!("{}\n{}\n{}", line.help, line.group, synonyms(&line.action)));
     cursor.found(words).into_iter().map(|index| active[index]).collect()
 }
 

@@ -140,7 +140,11 @@ pub fn describe(figures: &WizardSummary) -> String {
     );
     match measures.words() {
         None => text += "        what was believed is not known, so neither are hits and misses\n",
-        Some(words) => words.iter().for_each(|words| text += &format!("        {words}\n")),
+        Some([beliefs, signals]) => {
+            let after =
+                measures.latency_s.map_or(String::new(), |s| format!(", hit after {:.1} s in the median", s.median));
+            text += &format!("        {beliefs}{after}\n        signals without a hit: {signals}\n");
+        }
     }
     text
 }

@@ -216,7 +216,6 @@ impl WizardMeasures {
     pub fn words(&self) -> Option<[String; 2]> {
         let number = |value: Option<u64>| value.map_or("-".to_string(), |value| value.to_string());
         let episodes = count(self.episodes?, "false belief", "false beliefs");
-        let after = self.latency_s.map_or(String::new(), |s| format!(" after {:.1} s in the median", s.median));
         let (hits, missed) = (number(self.hits), number(self.omissions));
         let verdicts = [
             (self.repeated, SignalVerdict::Repeated),
@@ -226,10 +225,7 @@ impl WizardMeasures {
             (self.harmless, SignalVerdict::Harmless),
         ];
         let verdicts = verdicts.map(|(value, verdict)| format!("{} {}", number(value), verdict.name()));
-        Some([
-            format!("{episodes} with errors: {hits} hit{after}, {missed} missed"),
-            format!("other signals: {}", verdicts.join(", ")),
-        ])
+        Some([format!("{episodes} with errors: {hits} hit, {missed} missed"), verdicts.join(", ")])
     }
 
     /// Signals that count as wrong in training: about a right belief, whether or not another one was false.

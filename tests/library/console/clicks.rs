@@ -350,7 +350,7 @@ fn a_paste_filters_a_list_and_chooses_nothing() {
     assert_eq!(stage.control('k'), None);
     assert_eq!(stage.paste(Some("stop the robot\n")), None);
     let Some(Dialog::Palette(cursor)) = &stage.model.dialog else { panic!("{:?}", stage.model.dialog) };
-    assert_eq!(cursor.filter, "stoptherobot");
+    assert_eq!(cursor.filter, "stop the robot");
     assert_eq!(stage.key(KeyCode::Esc), None);
     assert_eq!(stage.key(KeyCode::Esc), None);
     stage.wait(1.0);

@@ -84,7 +84,7 @@ impl Stage {
             }
         }
         let judged = self.engine.judged();
-        let new = judged[self.judged..].iter().filter(|press| press.verdict.error).map(|press| press.time);
+        let new = judged[self.judged..].iter().filter(|press| press.verdict.error);
         self.model.errors.extend(new);
         self.judged = judged.len();
         (self.model.now, self.model.clock) = (now, now);

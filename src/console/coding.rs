@@ -388,9 +388,10 @@ impl ErrorListLayout {
         let (inside, head_rows) = match (&coding.party, is_lines) {
             (CodingRaters::Pair { .. }, true) if area.height > 3 => (area, 2),
             (_, true) => (area, 1),
-            // Lines above the list of errors: the progress bar, and the present error or the next step.
-            (CodingRaters::Rater(_), false) => (inside(area), 3),
-            (CodingRaters::Pair { .. }, false) => (inside(area), 4),
+            // Lines above the list of errors: the progress bar, and the present error or the next step; where there is
+            // room, also what was on the display.
+            (CodingRaters::Rater(_), false) => (inside(area), if area.height < 14 { 4 } else { 5 }),
+            (CodingRaters::Pair { .. }, false) => (inside(area), if area.height < 14 { 5 } else { 6 }),
         };
         let head_rows = head_rows.min(inside.height);
         let head = Rect { height: head_rows, ..inside };

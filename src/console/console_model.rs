@@ -1,11 +1,13 @@
 //! State of the console besides the session, the messages that it receives, and the commands that it returns.
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 use crossterm::event::{KeyCode, KeyEvent};
 
 use super::chord::KeyChord;
 use super::coding::RaterSession;
+use super::form::ItemChoice;
 use super::gaze_check::AccuracyCheckAction;
 use super::key_action::{KeyAction, KeyLayer};
 use super::keys::KeyBindings;
@@ -20,10 +22,10 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::gaze::recorded::RecordedGazeSummary;
 use tomcom_core::kitchen::{Agent, AspectId};
+use tomcom_core::measures::wizard_performance::WizardMeasures;
 use tomcom_session::history::belief_track::BeliefHistory;
 use tomcom_session::history::comparison::{SenderComparison, UnmatchedCommunication};
 use tomcom_session::history::error_reasons::ExplainedError;
-use tomcom_session::history::signal_judge::SignalJudge;
 use tomcom_session::preflight_checks::RejectedGaze;
 use tomcom_session::replay::ReplayLandmark;
 use tomcom_session::{Event, TimelineEntry, TimelineEvent};
@@ -156,8 +158,8 @@ pub struct ConsoleModel {
     pub errors: Vec<ExplainedError>,
     /// Number of the human's presses whose judgement rests on a cost to go that is not proven.
     pub unproven: u64,
-    /// Judgement of each signal of the trial at the time when the signal was sent (hit, late or needless).
-    pub signals: SignalJudge,
+    /// The wizard's signals as the study judges them, once the trial is over.
+    pub wizard: WizardMeasures,
     pub belief: BeliefHistory,
     /// State aspect whose estimated belief is shown over time.
     pub belief_focus: Option<AspectId>,
@@ -166,6 +168,8 @@ pub struct ConsoleModel {
     pub coding: Option<RaterSession>,
     pub playback: Option<Playback>,
     pub probe_entry: ProbeEntry,
+    /// Chosen answer to the shown questionnaire item, until enter records it.
+    pub item_choice: Option<ItemChoice>,
     /// Index of the selected reason for waiving the practice criterion, until enter confirms it.
     pub waiver: Option<usize>,
     /// What the wizard has selected to do with the result of a gaze accuracy check, until enter confirms it.
@@ -216,7 +220,7 @@ impl ConsoleModel {
             rings: false,
             errors: Vec::new(),
             unproven: 0,
-            signals: SignalJudge::default(),
+            wizard: WizardMeasures::default(),
             belief: BeliefHistory::default(),
             belief_focus: None,
             comparison: None,
@@ -224,6 +228,7 @@ impl ConsoleModel {
             coding: None,
             playback: None,
             probe_entry: ProbeEntry::default(),
+            item_choice: None,
             waiver: None,
             gaze_choice: None,
             palette_chosen: None,
@@ -452,6 +457,8 @@ pub struct Playback {
     pub playing: bool,
     /// Playback speed, as an index into [`SPEEDS`].
     pub speed: usize,
+    /// Errors, signals and false beliefs of the recording, as far as it was read.
+    pub marks: Arc<[(SessionTime, ReplayLandmark)]>,
     /// Session time of the last known event of the recording.
     pub length: SessionTime,
     pub trial_length: SessionTime,
@@ -473,6 +480,7 @@ impl Playback {
             name,
             playing: false,
             speed: 2,
+            marks: Arc::default(),
             length: SessionTime::ZERO,
             trial_length: SessionTime::ZERO,
             event: 0,

@@ -1,5 +1,5 @@
 //! Sheets around a trial (forms at full size): steps to tick, questionnaire items, and an unmet practice criterion.
-//! Enter confirms; arrows go between items, digits answer or choose, and the advance key leaves a completed sheet.
+//! Digits choose, enter goes on; arrows go between items, and the advance key leaves a completed sheet.
 //! Confirmations and answers are recorded as events of the session.
 
 use crossterm::event::KeyCode;
@@ -10,7 +10,7 @@ use super::probe_keys;
 use super::text_input::TextInput;
 use tomcom_session::plan::{AnswerFormat, PhaseSpec, Questionnaire, Tutorial};
 use tomcom_session::probes::StartedProbe;
-use tomcom_session::protocol::{ProtocolEvent, StudyProtocolState};
+use tomcom_session::protocol::{ItemAnswer, ProtocolEvent, StudyProtocolState};
 use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::tutorial::{TutorialEvent, TutorialPageTurner};
 use tomcom_session::{Event, Session, TrialPhase};
@@ -172,20 +172,41 @@ fn ask(
     let id = |index: usize| questionnaire.items.get(index).map(|item| item.id.clone());
     let (shown, form) = (id(protocol.item), questionnaire.form(protocol.item));
     let is_typed = form.is_some_and(|form| is_typed(&form));
+    let chosen = model.item_choice.take_if(|choice| shown.as_ref() != Some(&choice.item) || stroke.ends_choice());
+    if let Some(choice) = chosen.filter(|choice| shown.as_ref() == Some(&choice.item)) {
+        return match stroke {
+            SheetKey::Undo => None,
+            _ => send_protocol(model, session, choice.event()),
+        };
+    }
     match (stroke, shown) {
+        (SheetKey::Back, Some(_)) if model.item_choice.is_some() => {
+            refuse(model, "enter keeps the answer, backspace takes it back")
+        }
         (SheetKey::Digit(digit), Some(_)) if is_typed => begin_typing(model, protocol, char::from(b'0' + digit)),
         (SheetKey::Letter(letter), Some(_)) if is_typed => begin_typing(model, protocol, letter),
         (SheetKey::Digit(0) | SheetKey::Skip, Some(item)) => {
-            send_protocol(model, session, ProtocolEvent::ItemSkipped { item })
+            model.item_choice = Some(ItemChoice { item, answer: ItemAnswer::Skipped });
+            None
         }
         (SheetKey::Digit(digit), Some(item)) => {
             let index = usize::from(digit - 1);
-            let chosen = form.and_then(|form| form.choose(index, protocol.given(protocol.item)));
-            let is_choice = matches!(form, Some(AnswerFormat::Choice { .. }));
-            match chosen.or((!is_choice).then(|| AnswerValue::from(digit))) {
-                Some(answer) => send_protocol(model, session, ProtocolEvent::ItemAnswered { item, answer }),
-                None => refuse(model, "the item has no option with this number"),
+            let form = form?;
+            let option = form.choose(index, protocol.given(protocol.item));
+            let is_choice = matches!(form, AnswerFormat::Choice { .. });
+            let Some(answer) = option.or((!is_choice).then(|| AnswerValue::from(digit))) else {
+                return refuse(model, "the item has no option with this number");
+            };
+            if let Err(reason) = form.admit(&answer) {
+                return refuse(model, reason);
             }
+            let choice = ItemChoice { item, answer: ItemAnswer::Given(answer) };
+            if form.stays() {
+                // Of several options each is an answer of its own, after which the item stays.
+                return send_protocol(model, session, choice.event());
+            }
+            model.item_choice = Some(choice);
+            None
         }
         (SheetKey::Digit(_) | SheetKey::Letter(_) | SheetKey::Skip, _) => {
             refuse(model, "to change an answer, go back to its item first")
@@ -204,6 +225,23 @@ fn ask(
         },
         (SheetKey::Forward, None) => refuse(model, "enter confirms the answers"),
         (SheetKey::Leave, _) => leave(model, session),
+    }
+}
+
+/// The chosen answer to a questionnaire item, before enter records it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ItemChoice {
+    pub item: String,
+    pub answer: ItemAnswer,
+}
+
+impl ItemChoice {
+    fn event(self) -> ProtocolEvent {
+        let item = self.item;
+        match self.answer {
+            ItemAnswer::Given(answer) => ProtocolEvent::ItemAnswered { item, answer },
+            ItemAnswer::Skipped => ProtocolEvent::ItemSkipped { item },
+        }
     }
 }
 
@@ -302,4 +340,11 @@ pub(super) enum SheetKey {
     Digit(u8),
     /// A letter or a minus sign, which begins a typed answer.
     Letter(char),
+}
+
+impl SheetKey {
+    /// Whether the key records the chosen answer to an item, or takes it back.
+    fn ends_choice(self) -> bool {
+        matches!(self, SheetKey::Confirm | SheetKey::Forward | SheetKey::Undo)
+    }
 }

@@ -2,6 +2,8 @@
 //! recordings; and the prompt before a recording.
 
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+use fuzzy_matcher::FuzzyMatcher;
+use fuzzy_matcher::skim::SkimMatcherV2;
 
 use super::console_model::{ConsoleModel, Dialog};
 use super::key_action::{KeyAction, KeyBinding, ManualAction};
@@ -48,38 +50,51 @@ impl ListCursor {
             KeyCode::Backspace => drop(self.filter.pop()),
             // Punctuation is not part of the filter, so that a question mark does not empty the list.
             KeyCode::Char(letter) if letter.is_alphanumeric() => self.filter.push(letter),
+            KeyCode::Char(' ') if !self.filter.is_empty() => self.filter.push(' '),
             _ => {}
         }
         self.at = if self.filter.len() == before { self.at.min(last) } else { 0 };
         ListReply::Open
     }
 
-    /// Adds the letters and digits of a pasted text to the filter.
+    /// Adds the words of a pasted text to the filter.
     pub fn paste(&mut self, text: &str) {
-        self.filter.extend(text.chars().filter(|letter| letter.is_alphanumeric()));
+        self.filter.extend(text.chars().filter(|letter| letter.is_alphanumeric() || *letter == ' '));
         self.at = 0;
     }
 
-    /// Whether a row with this text matches the filter: the row's letters and digits contain the filter, or the filter
-    /// consists of beginnings of the row's words in their order ("traw" for "tuna raw").
-    pub fn keeps(&self, text: &str) -> bool {
-        let wanted: Vec<char> = self.filter.to_lowercase().chars().collect();
-        let text = text.to_lowercase();
-        let words: Vec<Vec<char>> = text
-            .split(|letter: char| !letter.is_alphanumeric())
-            .filter(|word| !word.is_empty())
-            .map(|word| word.chars().collect())
-            .collect();
-        let joined: Vec<char> = words.concat();
-        wanted.is_empty() || joined.windows(wanted.len()).any(|part| part == wanted) || begins(&words, &wanted)
+    /// Indices of the rows with these texts that match the filter, the best one first. Only the best kind of match is
+    /// kept, so that a whole code leaves its own row: each typed word begins a word; or a line of the row's text has the
+    /// typed letters in one piece, signs and spaces left out; or it has them in their order.
+    pub fn found(&self, rows: impl Iterator<Item = String>) -> Vec<usize> {
+        let typed = self.filter.to_lowercase();
+        let scattered = SkimMatcherV2::default();
+        let joined = |line: &str| line.chars().filter(|letter| letter.is_alphanumeric()).collect::<String>();
+        let rank = |text: String| {
+            let text = text.to_lowercase();
+            let words = || text.split(|letter: char| !letter.is_alphanumeric());
+            let has = |is_it: &dyn Fn(&str, &str) -> bool| {
+                typed.split_whitespace().filter(|typed| words().any(|word| is_it(word, typed))).count()
+            };
+            let all = typed.split_whitespace().count();
+            let letters: String = typed.split_whitespace().collect();
+            match () {
+                () if has(&|word, typed| word.starts_with(typed)) == all => {
+                    Some((0, (all - has(&|word, typed| word == typed)) as i64))
+                }
+                () if text.lines().any(|line| joined(line).contains(&letters)) => Some((1, 0)),
+                () => {
+                    let scores = text.lines().filter_map(|line| scattered.fuzzy_match(line, &letters));
+                    scores.max().map(|score| (2, -score))
+                }
+            }
+        };
+        let mut found: Vec<_> = rows.enumerate().filter_map(|(index, text)| Some((rank(text)?, index))).collect();
+        found.sort_unstable();
+        let best = found.first().map(|((kind, _), _)| *kind);
+        found.retain(|((kind, _), _)| Some(*kind) == best);
+        found.into_iter().map(|(_, index)| index).collect()
     }
-}
-
-/// Whether `wanted` consists of beginnings of some of these words, in their order.
-fn begins(words: &[Vec<char>], wanted: &[char]) -> bool {
-    let Some((word, rest)) = words.split_first() else { return wanted.is_empty() };
-    let common = word.iter().zip(wanted).take_while(|(letter, typed)| letter == typed).count();
-    wanted.is_empty() || (0..=common).any(|taken| begins(rest, &wanted[taken..]))
 }
 
 /// Question that a list of answers asks the wizard.
@@ -145,9 +160,9 @@ impl Picker {
 
     /// Entries of the list that match the filter.
     pub fn choices(&self, session: &Session) -> Vec<PickerEntry> {
-        let mut choices = self.all(session);
-        choices.retain(|choice| self.cursor.keeps(&choice.label));
-        choices
+        let all = self.all(session);
+        let found = self.cursor.found(all.iter().map(|choice| choice.label.clone()));
+        found.into_iter().map(|index| all[index].clone()).collect()
     }
 
     fn all(&self, session: &Session) -> Vec<PickerEntry> {
@@ -262,19 +277,17 @@ fn ends(action: &KeyAction) -> bool {
     )
 }
 
-/// The actions that match the filter, in the order of the help. Without a filter, the one that the palette was opened
-/// with is first, and what stops the robot or ends the trial or the session is last.
+/// The actions that match the filter, the best match first, else in the order of the help. Without a filter, the one that
+/// the palette was opened with is first, and what stops the robot or ends the trial or the session is last.
 pub fn actions<'a>(model: &'a ConsoleModel, cursor: &ListCursor) -> Vec<&'a KeyBinding> {
-    let is_active = |line: &&KeyBinding| line.layer.is_none_or(|only| only == model.layer);
-    let is_left = |line: &&KeyBinding| {
-        let words = format!("{} {} {}", line.help, line.group, synonyms(&line.action));
-        line.action != KeyAction::Palette && cursor.keeps(&words)
-    };
-    let mut left: Vec<&KeyBinding> = model.keys.bindings.iter().filter(is_active).filter(is_left).collect();
+    let is_active =
+        |line: &&KeyBinding| line.layer.is_none_or(|only| only == model.layer) && line.action != KeyAction::Palette;
+    let mut active: Vec<&KeyBinding> = model.keys.bindings.iter().filter(is_active).collect();
     if cursor.filter.is_empty() {
-        left.sort_by_key(|line| (model.palette_first.as_ref() != Some(&line.action), ends(&line.action)));
+        active.sort_by_key(|line| (model.palette_first.as_ref() != Some(&line.action), ends(&line.action)));
     }
-    left
+    let words = active.iter().map(|line| format!("{}\n{}\n{}", line.help, line.group, synonyms(&line.action)));
+    cursor.found(words).into_iter().map(|index| active[index]).collect()
 }
 
 /// An open list from which the user chooses a recording.
@@ -300,9 +313,9 @@ impl RecordingPicker {
         RecordingPicker { title, headings, rows, cursor: ListCursor::default() }
     }
 
-    /// Indices of the rows that match the filter, within one cell or across neighbouring cells.
+    /// Indices of the rows that match the filter, the best match first.
     pub fn left(&self) -> Vec<usize> {
-        (0..self.rows.len()).filter(|&row| self.cursor.keeps(&self.rows[row].join(" "))).collect()
+        self.cursor.found(self.rows.iter().map(|row| row.join(" ")))
     }
 
     pub fn key(&mut self, key: &KeyEvent) -> Option<RecordingReply> {

@@ -171,7 +171,7 @@ pub fn replay() -> Vec<KeyBinding> {
         ("step_back", plain(Left), ReplayAction::StepBack, "go to the previous event", None),
         ("next_error", [KeyChord::char('e')], On(ReplayLandmark::Error), "go to the next error", Some("error")),
         ("last_error", [KeyChord::char('w')], BackTo(ReplayLandmark::Error), "go to the previous error", None),
-        ("next_signal", [KeyChord::char('s')], On(ReplayLandmark::Signal), "go to the next signal", None),
+        ("next_signal", [KeyChord::char('s')], On(ReplayLandmark::Signal), "go to the next signal", Some("signal")),
         ("last_signal", [KeyChord::char('a')], BackTo(ReplayLandmark::Signal), "go to the previous signal", None),
         ("next_marker", [KeyChord::char('m')], On(ReplayLandmark::Marker), "go to the next note", None),
         ("last_marker", [KeyChord::char('n')], BackTo(ReplayLandmark::Marker), "go to the previous note", None),
@@ -180,7 +180,7 @@ pub fn replay() -> Vec<KeyBinding> {
             [KeyChord::char('b')],
             On(ReplayLandmark::FalseBelief),
             "go to the next false belief",
-            None,
+            Some("false belief"),
         ),
         (
             "last_false_belief",

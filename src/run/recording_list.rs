@@ -78,6 +78,7 @@ fn read_or_tell(
         code: None,
         condition: None,
         arm: None,
+        kind: None,
         date: None,
         trial_s: None,
         errors: None,
@@ -92,9 +93,9 @@ fn read_or_tell(
         return (from_figures(path, depth, glance, figures).unwrap_or_else(unreadable), None);
     }
     match read(path, depth, cost) {
-        Ok((row, at_console)) => {
-            let is_whole = at_console.counts() && row.state == RecordingState::Whole;
-            let glance = glance.filter(|_| is_whole);
+        Ok(row) => {
+            // The cache stands for whole recordings only: a closed log does not tell another state at a glance.
+            let glance = glance.filter(|_| row.state == RecordingState::Whole);
             let new = glance.zip(row.arm.zip(row.trial_s).zip(row.errors.zip(row.kind)));
             let new = new.map(|(glance, ((arm, trial_s), (errors, kind)))| {
                 (glance.digest, CachedRecordingNumbers { arm, trial_s, errors, kind })
@@ -128,13 +129,8 @@ fn from_figures(
     })
 }
 
-/// Applies all events of a recording; `cost` is kept for the next recording of the same kitchen. Returns also whether
-/// the trial was aborted or excluded at the console.
-fn read(
-    path: &Path,
-    depth: RecordingListDetail,
-    cost: &mut KeptCost,
-) -> FileResult<(ListedRecording, ExclusionStatus)> {
+/// Applies all events of a recording; `cost` is kept for the next recording of the same kitchen.
+fn read(path: &Path, depth: RecordingListDetail, cost: &mut KeptCost) -> FileResult<ListedRecording> {
     let mut log = LogReader::open(path)?;
     let mut session = log.session();
     let kitchen = session.kitchen.clone();
@@ -151,10 +147,9 @@ fn read(
             }
         }
     }
-    let at_console = ExclusionStatus::at_console(&session);
-    let standing = standing::with_ruling(at_console.clone(), log.folder())?;
+    let standing = standing::with_ruling(ExclusionStatus::at_console(&session), log.folder())?;
     let state = RecordingState::from_session(&session, log.ending(), &standing);
-    let row = ListedRecording {
+    Ok(ListedRecording {
         recording: name(path),
         code: Some(session.spec.participant.code.clone()),
         condition: Some(session.spec.trial.condition),
@@ -165,8 +160,7 @@ fn read(
         kind: Some(RecordingKind::from_spec(&session.spec)),
         state,
         reason: (state == RecordingState::Excluded).then(|| standing.describe()),
-    };
-    Ok((row, at_console))
+    })
 }
 
 /// Period of redrawing the list of recordings, in case the terminal's size changed.
@@ -178,13 +172,15 @@ const REDRAW: Duration = Duration::from_millis(100);
 /// The folder cannot be read or has no recordings, or there is no terminal.
 pub fn pick(folder: &Path) -> Result<Option<PathBuf>, ReviewError> {
     let (list, paths) = list(folder, RecordingListDetail::Quick, |_| (), || ())?;
+    let mut newest: Vec<(&ListedRecording, PathBuf)> = list.recordings.iter().zip(paths).collect();
+    newest.sort_by_key(|(one, _)| std::cmp::Reverse((&one.date, &one.recording)));
     // The list has no column of errors here, since counting errors takes long.
     let without_errors = |cells: [String; 8]| {
         let [code, kind, condition, date, length, _, state, recording] = cells;
         vec![code, kind, condition, date, length, state, recording]
     };
     let headings = without_errors(RecordingList::HEADINGS.map(str::to_string));
-    let rows = list.recordings.iter().map(|one| without_errors(one.cells())).collect();
+    let rows = newest.iter().map(|(one, _)| without_errors(one.cells())).collect();
     let title = format!("Which recording of {}?", list.folder);
     let picker = RecordingPicker::new(title, headings, rows);
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(TerminalError)?;
@@ -194,7 +190,7 @@ pub fn pick(folder: &Path) -> Result<Option<PathBuf>, ReviewError> {
         event_loop::run(&mut shell, &mut station).await
     })?;
     Ok(match chosen {
-        Some(RecordingReply::Chosen(index)) => paths.get(index).cloned(),
+        Some(RecordingReply::Chosen(index)) => newest.into_iter().nth(index).map(|(_, path)| path),
         Some(RecordingReply::Leave) | None => None,
     })
 }

@@ -22,6 +22,7 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_session::history::wording;
 use tomcom_session::log::{LogEnding, RecordingLock};
+use tomcom_session::replay::ReplayLandmark;
 use tomcom_session::watcher::{SenderComparisonFollower, SenderComparisonSettings};
 
 /// Time spent on reading the rest of a recording, of the 50 ms between two ticks for files.
@@ -97,6 +98,8 @@ struct Review {
     dirty: bool,
     /// Comparison of wizard and assistants, if it was asked for.
     comparison: Option<ComparisonThreadHandle>,
+    /// Number of events that were read when the marks on the bar of the recording were made.
+    marked: usize,
 }
 
 impl Review {
@@ -137,6 +140,7 @@ impl Review {
             was_written: false,
             dirty: true,
             comparison,
+            marked: 0,
         };
         review.tell(0);
         let start = review.film.trial_start();
@@ -226,6 +230,21 @@ impl Review {
         if let Some(playback) = &mut self.model.playback {
             change(playback);
         }
+    }
+
+    /// Marks errors, signals and false beliefs on the bar of the recording; for raters, errors only.
+    fn mark(&mut self) {
+        let read = self.film.read_events();
+        if self.marked == read {
+            return;
+        }
+        self.marked = read;
+        // Where two marks meet, the later one of this list is seen.
+        let shown = [ReplayLandmark::Signal, ReplayLandmark::FalseBelief, ReplayLandmark::Error];
+        let shown = if self.model.coding.is_some() { &shown[2..] } else { &shown[..] };
+        let times = |&what: &ReplayLandmark| self.film.landmarks(what).into_iter().map(move |time| (time, what));
+        let marks: Vec<(SessionTime, ReplayLandmark)> = shown.iter().flat_map(times).collect();
+        self.playback(|playback| playback.marks = marks.into());
     }
 
     fn is(&self, what: impl FnOnce(&Playback) -> bool) -> bool {
@@ -327,6 +346,7 @@ impl ConsoleShell for Review {
         let (length, events) = self.film.length();
         let (event, cut) = (self.film.position, self.film.is_cut());
         let trial_length = self.film.trial_length();
+        self.mark();
         self.playback(|playback| *playback = Playback { length, trial_length, event, events, cut, ..playback.clone() });
     }
 

@@ -10,13 +10,14 @@ use std::path::Path;
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::follower::SessionFollower;
-use tomcom_session::history::belief_track::{BeliefHistory, BeliefSnapshot};
+use tomcom_session::history::belief_track::{self, BeliefHistory, BeliefSnapshot};
 use tomcom_session::history::error_reasons::ExplainedError;
+use tomcom_session::history::wording;
 use tomcom_session::log::LogPlace;
 use tomcom_session::replay::RecordingReplay;
 use tomcom_session::replay::ReplayLandmark;
 use tomcom_session::settings::WizardVisibility;
-use tomcom_session::{Event, Session, TimelineEntry, TimestampedEvent, TrialPhase, apply};
+use tomcom_session::{Event, Session, TimelineEntry, TimelineEvent, TimestampedEvent, TrialPhase, apply};
 use tomcom_study::analysis::recording_summary::ExclusionStatus;
 use tomcom_study::standing::exclusion_status;
 
@@ -358,21 +359,65 @@ impl SeekableReplay {
         last.checked_sub(2).map_or(0, |before| self.steps[before].index + 1)
     }
 
-    /// Position after all events at the time of the next or previous landmark of this kind.
-    pub fn landmark(&mut self, what: ReplayLandmark, forward: bool) -> Option<usize> {
-        let now = self.time();
-        let times: Vec<SessionTime> = match what {
+    /// Times of the landmarks of this kind, as far as the recording was read.
+    pub fn landmarks(&self, what: ReplayLandmark) -> Vec<SessionTime> {
+        match what {
             ReplayLandmark::Error => self.errors.iter().map(|error| error.time).collect(),
             ReplayLandmark::FalseBelief => self.beliefs.newly_false().collect(),
             ReplayLandmark::Signal | ReplayLandmark::Marker => {
                 self.steps.iter().filter(|step| step.landmark == Some(what)).map(|step| step.time).collect()
             }
-        };
+        }
+    }
+
+    /// Position after all events at the time of the next or previous landmark of this kind.
+    pub fn landmark(&mut self, what: ReplayLandmark, forward: bool) -> Option<usize> {
+        let (now, times) = (self.time(), self.landmarks(what));
         let found = match forward {
             true => times.into_iter().find(|&time| time > now),
             false => times.into_iter().rev().find(|&time| time < now),
         };
         found.map(|time| self.until(time))
+    }
+
+    /// The landmark of this kind at which the replay stands: "error 5 of 17: take salmon: order 1 needs tuna".
+    pub fn named(&self, what: ReplayLandmark) -> Option<String> {
+        let times = self.landmarks(what);
+        let index = times.iter().position(|&time| time == self.time())?;
+        Some(format!("{} {} of {}: {}", what.name(), index + 1, times.len(), self.told(what)?))
+    }
+
+    /// What the landmark of this kind is at which the replay stands.
+    fn told(&self, what: ReplayLandmark) -> Option<String> {
+        let (session, now) = (&self.session, self.time());
+        let entries = || session.timeline.iter().rev().take_while(|entry| entry.time == now).map(|entry| &entry.what);
+        match what {
+            ReplayLandmark::Error => {
+                let error = self.errors.iter().find(|error| error.time == now)?;
+                Some(format!("{}: {}", error.press, error.why))
+            }
+            ReplayLandmark::Signal => entries().find_map(|entry| match entry {
+                TimelineEvent::Signal { by, signal } => {
+                    Some(format!("{}, by the {}", wording::signal(signal), wording::sender(*by)))
+                }
+                _ => None,
+            }),
+            ReplayLandmark::Marker => entries().find_map(|entry| match entry {
+                TimelineEvent::Marker(note) => Some(note.clone()),
+                _ => None,
+            }),
+            ReplayLandmark::FalseBelief => {
+                let moments = self.beliefs.until(now);
+                let held = &moments.last()?.held;
+                let told = belief_track::newly_false(moments).map(|id| {
+                    let aspect = &session.kitchen.aspects[id.index()];
+                    let thinks = &aspect.wordings[usize::from(held[id.index()].wrong)];
+                    let truth = &aspect.wordings[session.kitchen.true_value(session.state, id)];
+                    format!("{}: thinks {thinks}, is {truth}", wording::location(&aspect.name))
+                });
+                Some(told.collect::<Vec<_>>().join("; "))
+            }
+        }
     }
 
     /// Session time of the last applied event.

@@ -176,15 +176,17 @@ impl TrainingShell {
             SignalVerdict::Hit { latency_s, .. } => {
                 (NoticeLevel::Done, format!("hit: the belief has been false for {latency_s:.1} s"))
             }
-            SignalVerdict::Again => (NoticeLevel::Done, "a signal already told this".to_string()),
-            SignalVerdict::Harmless => (NoticeLevel::Done, "the belief is false, but leads to no error".to_string()),
+            SignalVerdict::Repeated => (NoticeLevel::Done, "repeated: a signal already told this".to_string()),
+            SignalVerdict::Harmless => {
+                (NoticeLevel::Done, "harmless: the belief is false, but leads to no error".to_string())
+            }
             SignalVerdict::Late => {
                 (NoticeLevel::Refused, "late: the false belief was corrected a moment ago".to_string())
             }
-            SignalVerdict::WrongTarget => {
-                (NoticeLevel::Refused, format!("wrong place: the false belief is about {}", self.wrong_now(clock)))
+            SignalVerdict::Wrong => {
+                (NoticeLevel::Refused, format!("wrong: the false belief is about {}", self.wrong_now(clock)))
             }
-            SignalVerdict::Needless => (NoticeLevel::Refused, "wrong: no belief is false now".to_string()),
+            SignalVerdict::Needless => (NoticeLevel::Refused, "needless: no belief is false now".to_string()),
         };
         self.tell(level, format!("{words}: {text}"));
     }
@@ -321,10 +323,10 @@ impl ConsoleShell for TrainingShell {
     fn prepare(&mut self) {
         self.tick();
         let measures = self.measures();
-        let wrong = measures.wrong_targets.unwrap_or(0) + measures.needless.unwrap_or(0);
+        let wrong = measures.wrong_or_needless().unwrap_or(0);
         let missed = self.told_missed.iter().filter(|&&told| told).count();
         if let Some(lesson) = &mut self.model.lesson {
-            lesson.score = format!("{} hit, {missed} missed, {wrong} wrong", measures.hits.unwrap_or(0));
+            lesson.score = format!("{} hit, {missed} missed, {wrong} wrong or needless", measures.hits.unwrap_or(0));
         }
         self.model.now = self.now;
         let ((length, events), trial_length) = (self.film.length(), self.film.trial_length());

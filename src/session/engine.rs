@@ -37,9 +37,8 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::{Agent, AspectId, Kitchen};
+use tomcom_core::kitchen::{Agent, Kitchen};
 use tomcom_core::measures::JudgedPress;
-use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_people::participant::eyes::GazeDropoutSchedule;
 use tomcom_people::participant::{ParticipantAction, SimulatedParticipant};
@@ -133,16 +132,6 @@ impl SessionEngine {
 
     pub fn belief(&self) -> &DirichletBelief {
         self.follower.filter.belief()
-    }
-
-    /// Whether the belief about an aspect is false now: by the belief of a simulated participant, else by the estimate.
-    pub fn is_false(&self, aspect: AspectId) -> bool {
-        let (kitchen, state) = (&self.session().kitchen, self.session().state);
-        let p_truth = match &self.participant {
-            Some(participant) => participant.beliefs().p_truth(kitchen, state, aspect),
-            None => self.belief().p_truth(kitchen, state, aspect),
-        };
-        p_truth < FALSE_BELOW
     }
 
     pub fn session(&self) -> &Session {

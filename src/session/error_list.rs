@@ -6,7 +6,7 @@ use crate::follower::SessionFollower;
 use crate::history::{error_reasons, wording};
 use crate::wizard_log::clock_at;
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::Agent;
+use tomcom_core::kitchen::{Agent, Kitchen};
 use tomcom_core::measures::JudgedPress;
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -23,6 +23,9 @@ pub struct ListedError {
     /// What would have been right, for the screen: "order 1 needs tuna".
     #[serde(skip)]
     pub why: String,
+    /// What the places of the press held before it, for the screen: "cutting board raw salmon, human hand empty".
+    #[serde(skip)]
+    pub shown: String,
 }
 
 impl ListedError {
@@ -37,6 +40,7 @@ impl ListedError {
             button: wording::button(kitchen, Agent::Human, judged.button),
             effective: kitchen.no_effect(judged.before, Agent::Human, judged.button).is_none(),
             why: error_reasons::why(kitchen, judged),
+            shown: shown(kitchen, judged),
         };
         errors.enumerate().map(listed).collect()
     }
@@ -53,4 +57,11 @@ impl ListedError {
             false => format!("{} (no effect)", self.button),
         }
     }
+}
+
+/// Contents of the places that decide what the press does, as the display showed them before it.
+fn shown(kitchen: &Kitchen, press: &JudgedPress) -> String {
+    let places = kitchen.involved(Agent::Human, press.button);
+    let content = |place| format!("{} {}", kitchen.location(place).label(), kitchen.content_label(press.before, place));
+    places.into_iter().map(content).collect::<Vec<_>>().join(", ")
 }

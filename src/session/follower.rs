@@ -4,6 +4,7 @@
 use crate::apply::{ApplyError, apply};
 use crate::probes::{ProbeEvent, ProbeSubject, StartedProbe};
 use crate::tracker::TrackerEvent;
+use crate::wizard_log::WizardLog;
 use crate::{AppliedEvent, Event, Session, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
@@ -30,6 +31,7 @@ pub struct SessionFollower {
     pub episodes: FalseBeliefTracker,
     pub filter: BeliefFilter,
     pub repeats: SignalRepeatRule,
+    pub signals: WizardLog,
     /// `None` if computing times are not measured.
     pub timing: Option<InferenceTiming>,
     /// Judges presses; its caches can serve the next session in the same kitchen.
@@ -108,6 +110,7 @@ impl SessionFollower {
             episodes,
             filter,
             repeats,
+            signals: WizardLog::default(),
             timing,
             cost,
             judge,
@@ -136,8 +139,9 @@ impl SessionFollower {
 
     pub fn apply(&mut self, stamped: &TimestampedEvent) -> Result<AppliedEvent, ApplyError> {
         let applied = apply(&mut self.session, stamped)?;
+        self.signals.note(stamped, &self.session);
         match (&stamped.event, applied.change) {
-            (Event::ParticipantBelieves(witness), _) if self.finds_causes => {
+            (Event::ParticipantBelieves(witness), _) => {
                 let session = &self.session;
                 self.belief = Belief::of_witness(&session.kitchen, session.state, witness);
                 self.told_cause = ErrorCause::recorded(&session.kitchen, session.state, witness);
@@ -265,7 +269,8 @@ impl SessionFollower {
         locations.fold(0, |bits, location| bits | 1 << location.index())
     }
 
-    /// Without attribution of errors to causes, which takes too long in a running session.
+    /// Without attribution of errors to causes by likelihood, which takes too long in a running session: only causes that
+    /// a simulated participant recorded are known.
     pub fn without_causes(self) -> SessionFollower {
         SessionFollower { finds_causes: false, ..self }
     }
@@ -282,8 +287,9 @@ impl SessionFollower {
         let verdict = self.judge.human_pressed(&mut self.cost, stamped.time, press);
         // The participant's belief is recorded before every press and belongs to the next press only.
         let (belief, told) = (self.belief.take(), self.told_cause.take());
-        let cause = belief.as_ref().filter(|_| verdict.error).map(|belief| {
-            told.unwrap_or_else(|| self.attributor.cause(&kitchen, &mut self.cost, belief, press, number))
+        let cause = belief.as_ref().filter(|_| verdict.error).and_then(|belief| {
+            let found = || self.attributor.cause(&kitchen, &mut self.cost, belief, press, number);
+            told.or_else(|| self.finds_causes.then(found))
         });
         if let Some(cause) = cause {
             self.episodes.erred(&kitchen, cause);

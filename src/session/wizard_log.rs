@@ -72,21 +72,28 @@ impl WizardLog {
         }
     }
 
-    /// By false belief episodes from raters' codes. Raters code errors only, so it is unknown whether other beliefs
-    /// were false: signals about harmless false beliefs, signals about wrong targets and needless signals are not told
-    /// apart.
-    pub fn measures_by_raters(&self, follower: &SessionFollower, episodes: &[FalseBeliefEpisode]) -> WizardMeasures {
-        let sent: Vec<WizardSignal> = self.sent.iter().map(|(.., sent)| sent.clone()).collect();
-        let periods = periods(follower, episodes.iter());
-        let measures = WizardMeasures::from_signals(&sent, Some(&periods));
-        WizardMeasures { wrong_targets: None, needless: None, harmless: None, ..measures }
+    fn sent(&self) -> Vec<WizardSignal> {
+        self.sent.iter().map(|(.., sent)| sent.clone()).collect()
+    }
+}
+
+impl WizardSummary {
+    /// Of a session as far as it was followed.
+    pub fn from_follower(follower: &SessionFollower) -> WizardSummary {
+        let periods = false_belief_periods(follower);
+        WizardSummary {
+            measures: WizardMeasures::from_signals(&follower.signals.sent(), periods.as_deref()),
+            screens: follower.signals.seen.clone(),
+            unblinded: follower.session.unblinded,
+        }
     }
 
-    /// Of a session that was followed to its end.
-    pub fn figures(&self, follower: &SessionFollower) -> WizardSummary {
-        let sent: Vec<WizardSignal> = self.sent.iter().map(|(.., sent)| sent.clone()).collect();
-        let measures = WizardMeasures::from_signals(&sent, false_belief_periods(follower).as_deref());
-        WizardSummary { measures, screens: self.seen.clone(), unblinded: follower.session.unblinded }
+    /// By false belief episodes from raters' codes. Raters code errors only, so it is unknown whether other beliefs
+    /// were false: signals about harmless false beliefs, wrong signals and needless ones are not told apart.
+    pub fn measures_by_raters(follower: &SessionFollower, episodes: &[FalseBeliefEpisode]) -> WizardMeasures {
+        let periods = periods(follower, episodes.iter());
+        let measures = WizardMeasures::from_signals(&follower.signals.sent(), Some(&periods));
+        WizardMeasures { wrong_targets: None, needless: None, harmless: None, ..measures }
     }
 }
 
@@ -122,7 +129,6 @@ pub fn clock_at(session: &Session, time: SessionTime) -> SessionTime {
 
 pub fn describe(figures: &WizardSummary) -> String {
     let measures = &figures.measures;
-    let number = |value: Option<u64>| value.map_or("-".to_string(), |value| value.to_string());
     let drawn = measures.key_to_display_ms.map_or("not recorded".to_string(), |times| {
         format!("{:.1} ms in the median, {:.1} ms at most", times.median, times.max)
     });
@@ -132,22 +138,12 @@ pub fn describe(figures: &WizardSummary) -> String {
         count(measures.signals, "signal", "signals"),
         measures.taken_back
     );
-    match measures.episodes {
-        None => text += "        what was believed is not known, so neither are hits and omissions\n",
-        Some(episodes) => {
+    match measures.words() {
+        None => text += "        what was believed is not known, so neither are hits and misses\n",
+        Some([beliefs, signals]) => {
             let after =
-                measures.latency_s.map_or(String::new(), |s| format!(", after {:.1} s in the median", s.median));
-            text += &format!(
-                "        {} of {episodes} false beliefs with errors hit{after}; {} omitted\n        \
-                 {} repeated, {} late, {} about the wrong thing, {} while nothing was wrong, {} harmless\n",
-                number(measures.hits),
-                number(measures.omissions),
-                number(measures.repeated),
-                number(measures.late),
-                number(measures.wrong_targets),
-                number(measures.needless),
-                number(measures.harmless)
-            );
+                measures.latency_s.map_or(String::new(), |s| format!(", hit after {:.1} s in the median", s.median));
+            text += &format!("        {beliefs}{after}\n        signals without a hit: {signals}\n");
         }
     }
     text

@@ -1,16 +1,21 @@
-//! Measures of whole sessions: what is known of the beliefs behind presses, and how signals are judged.
+//! Measures of whole sessions: what is known of the beliefs behind presses, and how a wizard's signals are judged.
 
 use std::convert::Infallible;
 
 use tomcom_core::kitchen::{WeightedWorlds, World};
 use tomcom_core::measures::detection::{BeliefsBeforePress, EstimateBeforePress, TrialBeliefs};
+use tomcom_core::measures::matching::WINDOW;
 use tomcom_core::mind::belief::Belief;
 use tomcom_core::mind::choice::ChoiceParameters;
 use tomcom_core::mind::{ChoiceModel, RecordedBelief};
+use tomcom_people::wizard::WizardKind;
 use tomcom_session::follower::SessionFollower;
-use tomcom_session::history::signal_judge::{SignalJudge, SignalJudgementCounts};
-use tomcom_session::{apply, headless};
+use tomcom_session::headless;
+use tomcom_session::watcher::SenderComparisonSettings;
+use tomcom_session::wizard_log::{self, WizardSummary};
+use tomcom_study::analysis::comparison_summary::SenderComparer;
 use tomcom_study::analysis::likelihood::PressLogLikelihood;
+use tomcom_study::analysis::recording_summary::ExclusionStatus;
 use tomcom_study::analysis::trial_summary::{FalseBeliefErrorSummary, TrialSummary};
 
 use crate::support::*;
@@ -128,75 +133,28 @@ fn a_human_who_knows_everything_is_fitted_to_the_presses() {
     );
 }
 
-/// A trial whose signals are judged.
-struct Trial {
-    session: Session,
-    judge: SignalJudge,
-    seq: u64,
-}
-
-impl Trial {
-    fn start() -> Trial {
-        let spec = default_settings();
-        let mut trial =
-            Trial { session: Session::new(kitchen("sushi"), spec, 0), judge: SignalJudge::default(), seq: 0 };
-        trial.event(Event::TrialStarted);
-        trial
-    }
-
-    fn event(&mut self, event: Event) {
-        self.seq += 1;
-        let stamped = TimestampedEvent { seq: self.seq, time: at(10.0 * self.seq as f64), event };
-        apply(&mut self.session, &stamped).expect("the event fits");
-        self.judge.judge(&stamped, &self.session);
-    }
-
-    fn highlight(&mut self, place: &str, by: Sender) {
-        let signal = Signal::Highlight(place.to_string());
-        self.event(Event::SignalShown { by, signal, offer: None });
-    }
-
-    /// From now on only these places are believed wrong.
-    fn believes_wrong(&mut self, places: &[&str]) {
-        let named = |place: &&str| self.session.kitchen.aspect_named(place).expect("an aspect");
-        let wrong: Vec<_> = places.iter().map(named).collect();
-        self.judge.note(&self.session, |aspect| wrong.contains(&aspect));
-    }
-
-    fn press(&mut self) {
-        self.event(Event::Press { agent: Agent::Human, button: "take rice".to_string(), at_ns: None });
-    }
-}
-
 #[test]
-fn a_signal_is_judged_by_what_was_believed_before_it() {
-    let mut trial = Trial::start();
-    trial.believes_wrong(&["cooking_pot"]);
-    trial.highlight("cooking_pot", Sender::Wizard);
-    trial.highlight("cutting_board", Sender::Wizard);
-    trial.event(Event::SignalEnded { reason: SignalEndReason::TakenBack });
-    let tally = SignalJudgementCounts { hits: 1, late: 0, needless: 1, taken_back: 1 };
-    assert_eq!((trial.judge.tally(Sender::Wizard), tally.sent()), (tally, 2));
-    assert_eq!(trial.judge.tally(Sender::Assistant), SignalJudgementCounts::default());
-}
-
-#[test]
-fn it_is_late_up_to_three_presses_after_the_belief_became_right() {
-    let mut trial = Trial::start();
-    trial.believes_wrong(&["cooking_pot"]);
-    trial.believes_wrong(&[]);
-    for _ in 0..3 {
-        trial.press();
+fn a_running_session_judges_the_wizards_signals_as_compare_does() {
+    let kitchen = kitchen("sushi");
+    let mut spec = settings("");
+    spec.trial.condition = Condition::Wizard;
+    spec.wizard.kind = WizardKind::Scripted;
+    let start = || Session::new(kitchen.clone(), spec.clone(), 0);
+    let mut engine = SessionEngine::new(kitchen.clone(), spec.clone(), 0, CostToGo::new(kitchen.clone()));
+    // As a live session follows itself.
+    let mut live = SessionFollower::new(start(), CostToGo::new(kitchen.clone())).without_causes();
+    let mut compare = SenderComparer::new(start(), &SenderComparisonSettings { with: Vec::new(), window: WINDOW });
+    let mut follow = |stamped: &TimestampedEvent| {
+        live.apply(stamped).expect("what was recorded can be replayed");
+        compare.add(stamped)
+    };
+    headless::run(&mut engine, &mut follow).expect("what was recorded can be compared");
+    let at_console = WizardSummary::from_follower(&live).measures;
+    let compared = compare.finish("S001".to_string(), ExclusionStatus::default()).wizard.expect("a wizard's trial");
+    assert_eq!(at_console, compared.measures);
+    assert!(at_console.signals > 0 && at_console.episodes > Some(0), "{at_console:?}");
+    let printed = wizard_log::describe(&compared);
+    for words in at_console.words().expect("a simulated participant's beliefs are known") {
+        assert!(printed.contains(&words), "{words} in {printed}");
     }
-    trial.highlight("cooking_pot", Sender::Wizard);
-    assert_eq!(
-        trial.judge.tally(Sender::Wizard),
-        SignalJudgementCounts { late: 1, ..SignalJudgementCounts::default() }
-    );
-    trial.press();
-    trial.highlight("cooking_pot", Sender::Wizard);
-    assert_eq!(
-        trial.judge.tally(Sender::Wizard),
-        SignalJudgementCounts { late: 1, needless: 1, ..SignalJudgementCounts::default() }
-    );
 }

@@ -14,19 +14,19 @@ use crate::console::console_model::ConsoleModel;
 use crate::console::form::sheet;
 use crate::console::interventions::can_redo;
 use crate::console::key_action::{KeyAction, KeyLayer, ManualAction};
-use crate::console::text_columns::width;
+use crate::console::text_columns::{width, wrap};
 use tomcom_core::base::text::count;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Sender;
 use tomcom_core::kitchen::{Agent, Dish};
 use tomcom_core::robot::SafetyMode;
-use tomcom_session::history::signal_judge::SignalJudgementCounts;
+use tomcom_session::event::SignalEndReason;
 use tomcom_session::history::wording;
-use tomcom_session::settings::{ArmKind, ParticipantKind, WizardVisibility};
+use tomcom_session::settings::{ArmKind, Condition, ParticipantKind};
 use tomcom_session::{Session, TimelineEvent, TrialPhase};
 
 /// Width of a card, and least width of the names in its left column.
-const COLUMNS: u16 = 62;
+const COLUMNS: u16 = 76;
 const NAMES: u16 = 15;
 /// Columns between two keys.
 const GAP: u16 = 3;
@@ -136,8 +136,7 @@ fn after(session: &Session, model: &ConsoleModel) -> Card {
         String::new()
     };
     let mut facts = vec![fact("participant", place(session), TextRole::Strong)];
-    facts.extend(session.aborted.iter().map(|reason| fact("aborted because", reason.clone(), TextRole::Strong)));
-    facts.extend(session.excluded.iter().map(|reason| fact("excluded because", reason.clone(), TextRole::Strong)));
+    facts.extend(left_out(session, model));
     facts.extend([
         fact("orders", format!("{} served", session.served.len()), TextRole::Text),
         fact("presses", format!("{human} by the human, {robot} by the robot"), TextRole::Text),
@@ -201,29 +200,52 @@ fn stops(session: &Session) -> Vec<Fact> {
     facts
 }
 
-/// Lines of the card about signals: how many each sender sent, and how many of these were about a false belief, late,
-/// or needless. The latter line is left out where the wizard may not see the belief estimate.
+/// Lines of the card about signals: how many each sender sent, and how the study judges the wizard's, in the words of
+/// `tomcom compare`. Of a person's beliefs nothing is known before raters have coded the errors.
 fn signals(session: &Session, model: &ConsoleModel) -> Vec<Fact> {
-    let is_simulated = session.spec.participant.kind == ParticipantKind::Simulated;
-    let may_tell = is_simulated || session.spec.console.visibility >= WizardVisibility::Belief;
-    let mut facts = Vec::new();
+    let mut facts: Vec<Fact> = Vec::new();
     for by in [Sender::Wizard, Sender::Assistant] {
-        let tally = model.signals.tally(by);
-        if tally.sent() == 0 {
-            continue;
+        let (mut sent, mut back, mut last) = (0u64, 0u64, None);
+        for entry in &session.timeline {
+            match &entry.what {
+                TimelineEvent::Signal { by: sender, .. } => {
+                    last = Some(*sender);
+                    sent += u64::from(*sender == by);
+                }
+                TimelineEvent::SignalEnded(SignalEndReason::TakenBack) => back += u64::from(last == Some(by)),
+                _ => {}
+            }
         }
-        let back = if tally.taken_back > 0 { format!(", {} taken back", tally.taken_back) } else { String::new() };
-        let sent = format!("{} by the {}{back}", tally.sent(), wording::sender(by));
-        facts.push(fact(if facts.is_empty() { "signals" } else { "" }, sent, TextRole::Text));
-        if may_tell {
-            let basis = if is_simulated { "" } else { "  estimated" };
-            let SignalJudgementCounts { hits, late, needless, .. } = tally;
-            let judged = format!("{hits} about a false belief, {late} late, {needless} needless");
-            facts.push(fact(basis, judged, TextRole::Text));
+        if sent > 0 {
+            let back = if back > 0 { format!(", {back} taken back") } else { String::new() };
+            let sent = format!("{sent} by the {}{back}", wording::sender(by));
+            facts.push(fact(if facts.is_empty() { "signals" } else { "" }, sent, TextRole::Text));
         }
     }
     if facts.is_empty() {
         facts.push(fact("signals", "none".to_string(), TextRole::Text));
+    }
+    if session.spec.trial.condition == Condition::Wizard {
+        let words = model.wizard.words().map_or(Vec::new(), Vec::from);
+        facts.extend(words.into_iter().map(|words| fact("", words, TextRole::Text)));
+    }
+    facts
+}
+
+/// Lines of the card about an abort or an exclusion: its reason, what follows from it, and the key that takes it back.
+fn left_out(session: &Session, model: &ConsoleModel) -> Vec<Fact> {
+    let mut facts = Vec::new();
+    let mut told = |name: &str, reason: &String, action: ManualAction, does: &str| {
+        facts.push(fact(name, reason.clone(), TextRole::Strong));
+        let key =
+            model.keys.chord_for(&KeyAction::Manual(action)).map_or(String::new(), |key| format!("; {key} {does}"));
+        facts.push(fact("", format!("left out of the analysis{key}"), TextRole::Text));
+    };
+    if let Some(reason) = &session.aborted {
+        told("aborted", reason, ManualAction::Redo, "repeats the trial");
+    }
+    if let Some(reason) = &session.excluded {
+        told("excluded", reason, ManualAction::Exclude, "includes it again");
     }
     facts
 }
@@ -235,15 +257,22 @@ fn key_width(chord: KeyChord, words: &str) -> u16 {
 impl Card {
     fn draw(&self, brush: &mut Painter, screen: Rect) {
         let names = self.facts.iter().map(|(name, ..)| width(name) + 2).max().unwrap_or(0).max(NAMES);
-        let longest = self.facts.iter().map(|(_, text, _)| width(text)).max().unwrap_or(0);
-        let columns = (names + longest + 6).clamp(COLUMNS, screen.width.max(COLUMNS));
-        let lines = self.key_lines(columns - 4);
-        let rows = (self.facts.len() + lines.len()) as u16 + 4;
+        let columns = COLUMNS.min(screen.width);
+        let room = columns.saturating_sub(names + 5);
+        let facts: Vec<(&str, String, TextRole)> = self
+            .facts
+            .iter()
+            .flat_map(|(name, text, role)| {
+                let names = std::iter::once(name.as_str()).chain(std::iter::repeat(""));
+                names.zip(wrap(text, room)).map(move |(name, line)| (name, line, *role))
+            })
+            .collect();
+        let lines = self.key_lines(columns.saturating_sub(4));
+        let rows = (facts.len() + lines.len()) as u16 + 4;
         let inside = open(brush, screen, (columns, rows), &self.title, "");
         let x = inside.x + 2;
         let quiet = brush.style(TextRole::Quiet);
-        let room = inside.width.saturating_sub(names + 3);
-        for (row, (name, text, role)) in self.facts.iter().enumerate() {
+        for (row, (name, text, role)) in facts.iter().enumerate() {
             let y = inside.y + 1 + row as u16;
             if y + (lines.len() as u16) >= inside.bottom() {
                 break;

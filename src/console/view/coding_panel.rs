@@ -19,9 +19,8 @@ const NUMBER: u16 = 4;
 const CLOCK: u16 = 6;
 /// Least width, in columns, of an error list that shows codes in full.
 const WIDE: u16 = 62;
-/// Terminal columns of a rater's code in full ("wrong about assembly board"), and in short ("assembly board").
-const WHOLE_CODE: u16 = 27;
-const SHORT_CODE: u16 = 14;
+/// Least columns of a code.
+const LEAST_CODE: u16 = 4;
 /// Columns of the bar for the coding progress.
 const BAR: u16 = 16;
 
@@ -77,6 +76,12 @@ fn draw_errors(brush: &mut Painter, regions: &PanelAreas, coding: &RaterSession,
         false => draw_lines(brush, list.head, coding, events),
     }
     let at = coding.at(events);
+    // The presses come whole; the codes get what is left, since the line above the list has the present one in full.
+    let widest = |words: &dyn Fn(&ListedError) -> u16| coding.errors.iter().map(words).max().unwrap_or(0);
+    let codes = widest(&|error| width(&code_words(coding, error, area.width)));
+    let presses = widest(&|error| width(&press_words(brush, error, area.width)));
+    let room = area.width.saturating_sub(NUMBER + CLOCK + 5);
+    let codes_columns = codes.min(room.saturating_sub(presses).max(LEAST_CODE));
     for (row, index) in (list.first..coding.errors.len()).enumerate().take(usize::from(list.rows.height)) {
         let error = &coding.errors[index];
         let line = Rect { y: list.rows.y + row as u16, height: 1, ..list.rows };
@@ -85,7 +90,7 @@ fn draw_errors(brush: &mut Painter, regions: &PanelAreas, coding: &RaterSession,
             (_, true) => RowMark::Present,
             _ => RowMark::None,
         };
-        draw_row(brush, line, coding, error, mark);
+        draw_row(brush, line, codes_columns, coding, error, mark);
         brush.target(line, ClickAction::Error(index));
     }
 }
@@ -121,7 +126,8 @@ fn draw_head(brush: &mut Painter, head: Rect, coding: &RaterSession, events: usi
         lines.extend(wrap(&next, columns).into_iter().map(|line| (line, TextRole::Strong)));
     } else if let Some(error) = coding.present(events) {
         let code = RaterSession::words(coding.code(error));
-        lines.push((format!("{} {}", error.error, error.words()), TextRole::Strong));
+        let told = wrap(&format!("{} {}", error.error, reasoned(error)), columns);
+        lines.extend(told.into_iter().map(|line| (line, TextRole::Strong)));
         match coding.party {
             CodingRaters::Rater(_) => lines.push((format!("  {code}"), TextRole::Text)),
             CodingRaters::Pair { .. } => {
@@ -131,6 +137,8 @@ fn draw_head(brush: &mut Painter, head: Rect, coding: &RaterSession, events: usi
                 lines.extend(lines_of_own.into_iter().map(|own| (format!("  {own}"), TextRole::Text)));
             }
         }
+        let shown = wrap(&format!("before: {}", error.shown), columns.saturating_sub(2));
+        lines.extend(shown.into_iter().map(|line| (format!("  {line}"), TextRole::Quiet)));
     } else {
         lines.push(("enter goes to the human's first error".to_string(), TextRole::Quiet));
     }
@@ -149,7 +157,14 @@ enum RowMark {
 }
 
 /// Draws a row of the error list: number, time, press and codes.
-fn draw_row(brush: &mut Painter, line: Rect, coding: &RaterSession, error: &ListedError, mark: RowMark) {
+fn draw_row(
+    brush: &mut Painter,
+    line: Rect,
+    code_columns: u16,
+    coding: &RaterSession,
+    error: &ListedError,
+    mark: RowMark,
+) {
     let signs = brush.theme.signs();
     let role = if mark == RowMark::None { TextRole::Text } else { TextRole::Strong };
     let sign = match mark {
@@ -168,25 +183,39 @@ fn draw_row(brush: &mut Painter, line: Rect, coding: &RaterSession, error: &List
     x += NUMBER;
     brush.text(x, line.y, CLOCK, &format!("{:>5}", error.clock()), quiet);
     x += CLOCK;
-    let is_wide = line.width >= WIDE;
-    let code_columns = if is_wide { WHOLE_CODE } else { SHORT_CODE };
     let right = line.right().saturating_sub(1);
     let press_columns = right.saturating_sub(x + code_columns + 1);
-    let press = fit(&error.words(), press_columns, signs.ellipsis);
+    let whole = reasoned(error);
+    let press = if width(&whole) <= press_columns {
+        whole
+    } else {
+        fit(&press_words(brush, error, line.width), press_columns, signs.ellipsis)
+    };
     brush.parts(x, line.y, press_columns, &[(&press, role)]);
     x += press_columns + 1;
-    let code = coding.code(error);
-    let words = match is_wide {
-        true => RaterSession::words(code),
-        false => short(code),
-    };
-    let role = if code.is_some() { TextRole::Strong } else { TextRole::Quiet };
+    let words = code_words(coding, error, line.width);
+    let role = if coding.code(error).is_some() { TextRole::Strong } else { TextRole::Quiet };
+    let words = fit(&words, right.saturating_sub(x), signs.ellipsis);
     brush.parts(x, line.y, right.saturating_sub(x), &[(&words, role)]);
 }
 
-/// An error's code in few columns: for a false belief, only the place.
-fn short(code: Option<&ErrorCauseCode>) -> String {
-    match code.and_then(ErrorCauseCode::aspect) {
+/// The press with the reason why it was an error: "take salmon: order 1 needs tuna".
+fn reasoned(error: &ListedError) -> String {
+    format!("{}: {}", error.words(), error.why)
+}
+
+/// The press in a list of this width; in a narrow one, a sign says that it had no effect.
+fn press_words(brush: &Painter, error: &ListedError, columns: u16) -> String {
+    match error.effective || columns >= WIDE {
+        true => error.words(),
+        false => format!("{} {}", error.button, brush.theme.signs().no_effect),
+    }
+}
+
+/// An error's code in a list of this width; in a narrow one, of a false belief only the place.
+fn code_words(coding: &RaterSession, error: &ListedError, columns: u16) -> String {
+    let code = coding.code(error);
+    match code.and_then(ErrorCauseCode::aspect).filter(|_| columns < WIDE) {
         Some(place) => wording::location(place),
         None => RaterSession::words(code),
     }

@@ -140,7 +140,8 @@ pub fn draw_map(brush: &mut Painter, regions: &PanelAreas, session: &Session, mo
             Some(age_s) => (format!("{age_s:.0}s"), TextRole::Text),
             None => ("never".to_string(), TextRole::Quiet),
         };
-        let place = free(inside, &labels, (x, y), width(&label).max(width(&age)));
+        // On a small map some places have no room.
+        let Some(place) = free(inside, &labels, (x, y), width(&label).max(width(&age))) else { continue };
         labels.push(place);
         for (row, text, role) in [(0, &label, TextRole::Quiet), (1, &age, role)] {
             let style = brush.style(role);
@@ -160,11 +161,14 @@ pub fn draw_map(brush: &mut Painter, regions: &PanelAreas, session: &Session, mo
     }
 }
 
-/// A free position for a two-row label of the gaze map: centred at its place, or as few columns beside it as possible.
-fn free(inside: Rect, labels: &[Rect], (x, y): (u16, u16), columns: u16) -> Rect {
+/// A free position for a two-row label of the gaze map: centred at its place, or as few columns beside it as possible, or
+/// a row above or below.
+fn free(inside: Rect, labels: &[Rect], (x, y): (u16, u16), columns: u16) -> Option<Rect> {
     let last = inside.right().saturating_sub(columns).max(inside.x);
-    let at = |shift: i32| {
+    let lowest = inside.bottom().saturating_sub(2).max(inside.y);
+    let at = |shift: i32, down: i32| {
         let x = (i32::from(x) - i32::from(columns / 2) + shift).clamp(inside.x.into(), last.into()) as u16;
+        let y = (i32::from(y) + down).clamp(inside.y.into(), lowest.into()) as u16;
         Rect { x, y, width: columns, height: 2.min(inside.bottom().saturating_sub(y)) }
     };
     // Two labels of the gaze map are at least a column apart.
@@ -175,7 +179,11 @@ fn free(inside: Rect, labels: &[Rect], (x, y): (u16, u16), columns: u16) -> Rect
         })
     };
     let reach = i32::from(inside.width);
-    (0..reach).flat_map(|by| [at(by), at(-by)]).find(is_free).unwrap_or(at(0))
+    [0, -1, 1]
+        .iter()
+        .flat_map(|&down| (0..reach).flat_map(move |by| [(by, down), (-by, down)]))
+        .map(|(by, down)| at(by, down))
+        .find(is_free)
 }
 
 /// Draws the gaze sign where the participant looks. Text under the gaze stays as it is: the sign then stands after the

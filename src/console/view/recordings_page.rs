@@ -4,7 +4,7 @@ use crossterm::event::KeyCode;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 
-use super::dialog::{TYPE, open};
+use super::dialog::open;
 use super::paint::{Painter, targets};
 use super::theme::{TextRole, Theme};
 use crate::console::chord::KeyChord;
@@ -18,8 +18,8 @@ const AROUND: u16 = 7;
 const BESIDE: u16 = 6;
 /// Columns between two cells.
 const GAP: u16 = 2;
-/// Headings of the columns that are left out first where not all fit; the others tell recordings apart.
-const LEFT_OUT: [&str; 3] = ["length", "errors", "state"];
+/// Heading of the column that is left out where not all fit; the others tell recordings and their states apart.
+const LEFT_OUT: &str = "length";
 /// Least width of a column whose cells are cut.
 const LEAST_CELL: u16 = 6;
 /// Heading of the column whose cells are cut at their beginning: recordings of a day differ in the end of their names.
@@ -44,7 +44,7 @@ fn draw(brush: &mut Painter, picker: &RecordingPicker) {
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     let left = picker.left();
     let typed = format!("{}_", picker.cursor.filter);
-    brush.parts(x, inside.y, columns, &[(TYPE, TextRole::Quiet), (&typed, TextRole::Strong)]);
+    brush.parts(x, inside.y, columns, &[("type to filter: ", TextRole::Quiet), (&typed, TextRole::Strong)]);
     let quiet = brush.style(TextRole::Quiet);
     brush.text_right(x + columns, inside.y, 16, &format!("{} of {}", left.len(), picker.rows.len()), quiet);
     let headings = Rect { x: x + 2, y: inside.y + 2, width: columns.saturating_sub(2), height: 1 };
@@ -77,8 +77,8 @@ struct ShownColumns {
 }
 
 impl ShownColumns {
-    /// The columns for a row of `room` terminal columns. If not all fit, those that tell recordings apart are kept, and the
-    /// widest of these are cut.
+    /// The columns for a row of `room` terminal columns. If not all fit, the names of recordings are cut at their
+    /// beginning, which repeats date and code, and only then the widest of the others.
     fn that_fit(picker: &RecordingPicker, room: u16) -> ShownColumns {
         let width_of = |column: usize| {
             let cells = picker.rows.iter().filter_map(|row| row.get(column));
@@ -88,10 +88,12 @@ impl ShownColumns {
         let cut_in_front = picker.headings.iter().position(|heading| heading == CUT_IN_FRONT).unwrap_or(columns);
         let widths = (0..columns).map(|column| (column, width_of(column))).collect();
         let mut shown = ShownColumns { widths, cut_in_front };
-        for heading in LEFT_OUT {
-            if shown.needed() > room {
-                shown.widths.retain(|(column, _)| picker.headings[*column] != heading);
-            }
+        if shown.needed() > room {
+            shown.widths.retain(|(column, _)| picker.headings[*column] != LEFT_OUT);
+        }
+        let over = shown.needed().saturating_sub(room);
+        if let Some((_, name)) = shown.widths.iter_mut().find(|(column, _)| *column == cut_in_front) {
+            *name = name.saturating_sub(over).max(LEAST_CELL.min(*name));
         }
         while shown.needed() > room
             && let Some((_, widest)) = shown.widths.iter_mut().max_by_key(|(_, width)| *width)

@@ -40,7 +40,9 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
         FormContent::Probe(_) => {}
         FormContent::Steps { title, steps } => draw_steps(pen, screen, (title, &where_), steps, protocol, session),
         FormContent::Tutorial(tutorial) => draw_tutorial(pen, screen, &where_, tutorial, (session, model)),
-        FormContent::Questions(questionnaire) => draw_questions(pen, screen, &where_, questionnaire, protocol, session),
+        FormContent::Questions(questionnaire) => {
+            draw_questions(pen, screen, &where_, questionnaire, protocol, (session, model))
+        }
         FormContent::Failed => draw_failed(pen, screen, &where_, session, model.waiver),
     }
 }
@@ -137,7 +139,7 @@ fn draw_questions(
     where_: &str,
     questionnaire: &Questionnaire,
     protocol: &StudyProtocolState,
-    session: &Session,
+    (session, model): (&Session, &ConsoleModel),
 ) {
     let items = questionnaire.items.len();
     let mut page = Page::new(screen);
@@ -146,7 +148,9 @@ fn draw_questions(
         page.space();
         page.text(0, &item.text, TextRole::Strong);
         page.space();
-        let given = protocol.answers.get(protocol.item).and_then(Option::as_ref);
+        let chosen = model.item_choice.as_ref().filter(|choice| choice.item == item.id);
+        let given = chosen.map(|choice| &choice.answer);
+        let given = given.or(protocol.answers.get(protocol.item).and_then(Option::as_ref));
         let (keys, does) = match questionnaire.form(protocol.item) {
             Some(form) => item_form(&mut page, &form, given.and_then(ItemAnswer::value)),
             None => (String::new(), "answer"),

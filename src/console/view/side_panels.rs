@@ -266,7 +266,7 @@ pub fn draw_training(brush: &mut Painter, regions: &PanelAreas, model: &ConsoleM
     };
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     let mut y = inside.y;
-    for (clock, text, role) in training_lines(lesson) {
+    for (clock, text, role) in training_lines(lesson, model) {
         let indent = if clock.is_empty() { 0 } else { CLOCK };
         for (row, line) in wrap(&text, columns.saturating_sub(indent)).iter().enumerate() {
             if y >= inside.bottom() {
@@ -284,9 +284,12 @@ pub fn draw_training(brush: &mut Painter, regions: &PanelAreas, model: &ConsoleM
 }
 
 /// Lines of the training panel, each with or without a time on the trial's clock.
-fn training_lines(lesson: &TrainingPanel) -> Vec<(String, String, TextRole)> {
+fn training_lines(lesson: &TrainingPanel, model: &ConsoleModel) -> Vec<(String, String, TextRole)> {
     if lesson.feedback.is_empty() {
-        return lesson.task.iter().map(|text| (String::new(), text.clone(), TextRole::Text)).collect();
+        let start = model.keys.chord_for(&KeyAction::Advance).filter(|_| !lesson.begun);
+        let start = start.map(|key| (String::new(), format!("Press {key} to start."), TextRole::Strong));
+        let task = lesson.task.iter().map(|text| (String::new(), text.clone(), TextRole::Text));
+        return start.into_iter().chain(task).collect();
     }
     let newest = lesson.feedback.iter().rev().enumerate();
     let line = |(back, TrainingFeedback { clock, level, text }): (usize, &TrainingFeedback)| {

@@ -9,7 +9,8 @@ use super::paint::Painter;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
 use crate::console::beliefs::visibility;
-use crate::console::console_model::ConsoleModel;
+use crate::console::console_model::{ConsoleModel, ReplayAction};
+use crate::console::key_action::KeyAction;
 use crate::console::mouse::ClickAction;
 use crate::console::text_columns::width;
 use tomcom_core::base::time::SessionTime;
@@ -18,6 +19,7 @@ use tomcom_core::communication::offer::{Offer, OfferKeyKind, TAKEN_AFTER};
 use tomcom_core::kitchen::Agent;
 use tomcom_session::event::SignalEndReason;
 use tomcom_session::probes::ProbeEvent;
+use tomcom_session::replay::ReplayLandmark;
 use tomcom_session::settings::WizardVisibility;
 use tomcom_session::{Session, TimelineEntry, TimelineEvent, TrialPhase, offers};
 
@@ -297,14 +299,21 @@ pub fn draw_position(brush: &mut Painter, regions: &PanelAreas, session: &Sessio
     brush.text(x, area.y, columns, &line, thin);
     let here = (share.clamp(0.0, 1.0) * f64::from(columns.saturating_sub(1))) as u16;
     brush.text(x, area.y, here, &brush.theme.signs().frame[4].repeat(usize::from(here)), strong);
-    let sign = brush.theme.signs().recording;
-    // In a training, the errors to come would tell what to signal.
-    let errors = if model.lesson.is_some() { &[][..] } else { &model.errors };
-    for error in errors {
-        let share = error.time.as_secs_f64() / playback.length.as_secs_f64().max(1e-3);
+    for (time, what) in playback.marks.iter() {
+        let share = time.as_secs_f64() / playback.length.as_secs_f64().max(1e-3);
         let at = (share.clamp(0.0, 1.0) * f64::from(columns.saturating_sub(1))) as u16;
-        brush.text(x + at, area.y, 1, brush.theme.signs().error, strong);
+        let role = match what {
+            ReplayLandmark::Signal => TextRole::Signal,
+            ReplayLandmark::FalseBelief => TextRole::FalseBelief,
+            ReplayLandmark::Error | ReplayLandmark::Marker => TextRole::Strong,
+        };
+        // The mark is the key that goes there.
+        let key = model.keys.chord_for(&KeyAction::Move(ReplayAction::On(*what)));
+        let key = key.map_or(brush.theme.signs().error.to_string(), |key| key.to_string());
+        let style = brush.style(role);
+        brush.text(x + at, area.y, 1, &key, style);
     }
+    let sign = brush.theme.signs().recording;
     brush.text(x + here, area.y, 1, sign, strong);
     if model.lesson.is_some() {
         return;

@@ -7,6 +7,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::median;
+use crate::base::text::count;
 use crate::base::time::SessionTime;
 use crate::kitchen::AspectId;
 
@@ -61,26 +62,26 @@ pub enum SignalVerdict {
         period: usize,
     },
     /// Repeated: a further signal about the same false belief.
-    Again,
+    Repeated,
     /// Harmless: a signal about a false belief that led to no error.
     Harmless,
     /// Late: a signal about a false belief that had ended at most [`LATE_PRESSES`] presses before.
     Late,
-    /// Wrong target: a signal about a right belief while another belief was false.
-    WrongTarget,
+    /// Wrong: a signal about a right belief while another belief was false.
+    Wrong,
     /// Needless: a signal while no belief was false.
     Needless,
 }
 
 impl SignalVerdict {
-    /// The judgement of the signal in a word.
+    /// The judgement of the signal in a word; commands, reports, training and console use these words.
     pub fn name(self) -> &'static str {
         match self {
             SignalVerdict::Hit { .. } => "hit",
-            SignalVerdict::Again => "again",
+            SignalVerdict::Repeated => "repeated",
             SignalVerdict::Harmless => "harmless",
             SignalVerdict::Late => "late",
-            SignalVerdict::WrongTarget => "wrong",
+            SignalVerdict::Wrong => "wrong",
             SignalVerdict::Needless => "needless",
         }
     }
@@ -100,7 +101,7 @@ pub fn verdicts(sent: &[WizardSignal], periods: &[FalseBeliefPeriod]) -> Vec<Sig
                 hit[index] = true;
                 return SignalVerdict::Hit { latency_s: sent.clock.secs_since(period.began), period: index };
             }
-            Some((_, period)) if period.errors > 0 => return SignalVerdict::Again,
+            Some((_, period)) if period.errors > 0 => return SignalVerdict::Repeated,
             Some(_) => return SignalVerdict::Harmless,
             None => {}
         }
@@ -109,7 +110,7 @@ pub fn verdicts(sent: &[WizardSignal], periods: &[FalseBeliefPeriod]) -> Vec<Sig
         };
         match () {
             () if periods.iter().any(|period| about(period) && is_late(period)) => SignalVerdict::Late,
-            () if periods.iter().any(open) => SignalVerdict::WrongTarget,
+            () if periods.iter().any(open) => SignalVerdict::Wrong,
             () => SignalVerdict::Needless,
         }
     };
@@ -187,7 +188,8 @@ impl WizardMeasures {
         };
         let Some(periods) = periods else { return measures };
         let verdicts = verdicts(sent, periods);
-        let count = |is: fn(&SignalVerdict) -> bool| Some(verdicts.iter().filter(|verdict| is(verdict)).count() as u64);
+        let number =
+            |is: fn(&SignalVerdict) -> bool| Some(verdicts.iter().filter(|verdict| is(verdict)).count() as u64);
         let latency = |verdict: &SignalVerdict| {
             if let SignalVerdict::Hit { latency_s, .. } = verdict { Some(*latency_s) } else { None }
         };
@@ -198,17 +200,39 @@ impl WizardMeasures {
             hits: Some(latencies.len() as u64),
             omissions: Some(episodes - latencies.len() as u64),
             latency_s: TimeSummary::from_times(latencies),
-            repeated: count(|verdict| matches!(verdict, SignalVerdict::Again)),
-            late: count(|verdict| matches!(verdict, SignalVerdict::Late)),
-            wrong_targets: count(|verdict| matches!(verdict, SignalVerdict::WrongTarget)),
-            needless: count(|verdict| matches!(verdict, SignalVerdict::Needless)),
-            harmless: count(|verdict| matches!(verdict, SignalVerdict::Harmless)),
+            repeated: number(|verdict| matches!(verdict, SignalVerdict::Repeated)),
+            late: number(|verdict| matches!(verdict, SignalVerdict::Late)),
+            wrong_targets: number(|verdict| matches!(verdict, SignalVerdict::Wrong)),
+            needless: number(|verdict| matches!(verdict, SignalVerdict::Needless)),
+            harmless: number(|verdict| matches!(verdict, SignalVerdict::Harmless)),
             ..measures
         }
     }
 }
 
 impl WizardMeasures {
+    /// The verdicts in two sentences, which `tomcom compare` and the console's card share; `None` if the beliefs are not
+    /// known.
+    pub fn words(&self) -> Option<[String; 2]> {
+        let number = |value: Option<u64>| value.map_or("-".to_string(), |value| value.to_string());
+        let episodes = count(self.episodes?, "false belief", "false beliefs");
+        let (hits, missed) = (number(self.hits), number(self.omissions));
+        let verdicts = [
+            (self.repeated, SignalVerdict::Repeated),
+            (self.late, SignalVerdict::Late),
+            (self.wrong_targets, SignalVerdict::Wrong),
+            (self.needless, SignalVerdict::Needless),
+            (self.harmless, SignalVerdict::Harmless),
+        ];
+        let verdicts = verdicts.map(|(value, verdict)| format!("{} {}", number(value), verdict.name()));
+        Some([format!("{episodes} with errors: {hits} hit, {missed} missed"), verdicts.join(", ")])
+    }
+
+    /// Signals that count as wrong in training: about a right belief, whether or not another one was false.
+    pub fn wrong_or_needless(&self) -> Option<u64> {
+        Some(self.wrong_targets? + self.needless?)
+    }
+
     /// Totals of the wizard's performance over several trials: numbers are null where one trial's number is null;
     /// durations are the median of the trials' medians.
     pub fn sum<'a>(trials: impl IntoIterator<Item = &'a WizardMeasures>) -> WizardMeasures {
@@ -240,7 +264,7 @@ impl WizardMeasures {
 pub struct TrainingCriterion {
     /// Least share of hits among the periods of false belief that led to errors.
     pub hits: f64,
-    /// Largest share of signals that have a wrong target or are needless.
+    /// Largest share of signals that are wrong or needless.
     pub wrong: f64,
 }
 
@@ -250,8 +274,7 @@ impl TrainingCriterion {
     pub fn is_met(&self, measures: &WizardMeasures) -> bool {
         let share = |part: Option<u64>, all: u64| part.map(|part| part as f64 / all as f64).filter(|_| all > 0);
         let hits = share(measures.hits, measures.episodes.unwrap_or(0));
-        let wrong = measures.wrong_targets.zip(measures.needless).map(|(wrong, needless)| wrong + needless);
-        let wrong = share(wrong, measures.signals).unwrap_or(0.0);
+        let wrong = share(measures.wrong_or_needless(), measures.signals).unwrap_or(0.0);
         hits.is_some_and(|hits| hits >= self.hits) && wrong <= self.wrong
     }
 }

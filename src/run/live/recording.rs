@@ -12,6 +12,7 @@ use tomcom_session::history::wording;
 use tomcom_session::log::{LogWriter, RecordingWriteError};
 use tomcom_session::probes::ProbeEvent;
 use tomcom_session::settings::BellOccasion;
+use tomcom_session::wizard_log::WizardSummary;
 use tomcom_session::{Event, TimestampedEvent, TrialPhase};
 
 impl Live {
@@ -31,7 +32,6 @@ impl Live {
                 }
                 _ => {}
             }
-            self.model.signals.judge(stamped, self.engine.session());
             self.capture.tell(&stamped.event, self.clock.instant_of(stamped.time));
             if let Some(comparison) = &self.comparison {
                 comparison.tell(stamped);
@@ -48,7 +48,9 @@ impl Live {
             }
             self.model.belief.note(moment);
             self.model.belief.forget(session, last.time, belief_track::SHOWN_S);
-            self.model.signals.note(session, |aspect| self.engine.is_false(aspect));
+            if matches!(session.phase, TrialPhase::Over(_)) {
+                self.model.wizard = WizardSummary::from_follower(self.engine.follower()).measures;
+            }
         }
         for question in self.engine.take_questions() {
             if let Some(advisor) = &self.advisor {

@@ -7,7 +7,6 @@ use crate::console::console_model::NoticeLevel;
 use crate::console::console_model::{ReplayAction, SPEEDS};
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::Event;
-use tomcom_session::history::error_reasons::ExplainedError;
 use tomcom_session::replay::ReplayLandmark;
 
 /// Longest time per frame that is spent on applying events at full speed.
@@ -37,7 +36,7 @@ impl Review {
             ReplayAction::ToStart => self.stand_at(0),
             ReplayAction::ToEvent(number) => {
                 self.stand_at(number as usize + 1);
-                self.explain_error();
+                self.name_landmark(ReplayLandmark::Error);
             }
             ReplayAction::ToTime(time) => self.seek(time),
             ReplayAction::SeekForward => self.seek(self.now + SEEK),
@@ -69,9 +68,7 @@ impl Review {
         match self.film.landmark(what, forward) {
             Some(position) => {
                 self.stand_at(position);
-                if what == ReplayLandmark::Error {
-                    self.explain_error();
-                }
+                self.name_landmark(what);
             }
             None => {
                 let which = if forward { "later" } else { "earlier" };
@@ -80,12 +77,9 @@ impl Review {
         }
     }
 
-    /// Says which error the replay stands at, if it stands at one, and why it is one.
-    fn explain_error(&mut self) {
-        let errors = &self.film.errors;
-        if let Some(at) = errors.iter().position(|error| error.time == self.now) {
-            let ExplainedError { press, why, .. } = &errors[at];
-            let said = format!("error {} of {}: {press}: {why}", at + 1, errors.len());
+    /// Says which landmark of this kind the replay stands at, if it stands at one, and what it is.
+    fn name_landmark(&mut self, what: ReplayLandmark) {
+        if let Some(said) = self.film.named(what) {
             self.model.say(NoticeLevel::Done, said);
         }
     }

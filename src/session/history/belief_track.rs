@@ -129,6 +129,13 @@ impl BeliefHistory {
     }
 }
 
+/// State aspects about which the belief became false in the last of these snapshots.
+pub fn newly_false(moments: &[BeliefSnapshot]) -> impl Iterator<Item = AspectId> {
+    let last = moments.last();
+    let begins = last.into_iter().flat_map(|last| last.wrong_since.iter().map(|since| *since == Some(last.time)));
+    begins.enumerate().filter(|(_, begins)| *begins).map(|(index, _)| AspectId(index as u8))
+}
+
 /// Start of the present false belief about a state aspect.
 pub fn wrong_since(moments: &[BeliefSnapshot], aspect: usize) -> Option<SessionTime> {
     moments.last()?.wrong_since[aspect]

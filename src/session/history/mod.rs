@@ -5,5 +5,4 @@ pub mod belief_track;
 pub mod comparison;
 pub mod error_reasons;
 pub mod order_needs;
-pub mod signal_judge;
 pub mod wording;

@@ -18,7 +18,7 @@ use tomcom_session::history::belief_track::AspectBeliefSnapshot;
 use tomcom_session::history::comparison::{Communication, SenderComparison, UnmatchedCommunication};
 use tomcom_session::settings::Condition;
 use tomcom_session::watcher::{SenderComparisonFollower, SenderComparisonSettings};
-use tomcom_session::wizard_log::{self, WizardLog, WizardSummary};
+use tomcom_session::wizard_log::{self, WizardSummary};
 use tomcom_session::{Session, TimestampedEvent};
 
 const LISTED: usize = 20;
@@ -319,20 +319,17 @@ fn describe_pair(pair: &SenderPairSummary) -> String {
 
 pub struct SenderComparer {
     follower: SenderComparisonFollower,
-    wizard: WizardLog,
 }
 
 impl SenderComparer {
     pub fn new(session: Session, request: &SenderComparisonSettings) -> SenderComparer {
         let cost = CostToGo::new(session.kitchen.clone());
-        SenderComparer { follower: SenderComparisonFollower::new(session, cost, request), wizard: WizardLog::default() }
+        SenderComparer { follower: SenderComparisonFollower::new(session, cost, request) }
     }
 
     /// Applies the next event of the recording. Errors: it is not possible in the session's present state.
     pub fn add(&mut self, stamped: &TimestampedEvent) -> Result<(), ApplyError> {
-        self.follower.apply(stamped)?;
-        self.wizard.note(stamped, &self.follower.follower.session);
-        Ok(())
+        self.follower.apply(stamped).map(drop)
     }
 
     pub fn session(&self) -> &Session {
@@ -343,7 +340,7 @@ impl SenderComparer {
         self.follower.finish();
         let comparison = self.follower.comparison(true);
         let is_wizards = self.session().spec.trial.condition == Condition::Wizard;
-        let wizard = is_wizards.then(|| self.wizard.figures(&self.follower.follower));
+        let wizard = is_wizards.then(|| WizardSummary::from_follower(&self.follower.follower));
         let offers = OfferSummary::from_offers(&TimedOffer::visible(self.session()));
         RecordingSenderComparison { recording, follower: self.follower, standing, comparison, wizard, offers }
     }

@@ -106,12 +106,11 @@ pub fn right(belief: &HarmfulFalseBelief) -> String {
 
 pub fn task(criterion: &TrainingCriterion) -> Vec<String> {
     vec![
-        "Press . to start.".to_string(),
         "When the participant believes something wrong, press the key of the place or order it is about, as in a session."
             .to_string(),
         "A hit is the first signal about a false belief that leads to an error, while it is held.".to_string(),
         format!(
-            "Asked: at least {:.0} % of these beliefs hit, at most {:.0} % of the signals wrong.",
+            "Asked: at least {:.0} % of these beliefs hit, at most {:.0} % of the signals wrong or needless.",
             100.0 * criterion.hits,
             100.0 * criterion.wrong
         ),
@@ -134,17 +133,17 @@ pub fn lines(recordings: &[&WatchedRecording], criterion: &TrainingCriterion) ->
     lines
 }
 
-/// The wizard's score beside the criterion: "1 of 2 hit (50 %, asked: at least 60 %); 3 of 9 signals wrong (33 %,
-/// asked: at most 40 %)".
+/// The wizard's score beside the criterion: "1 of 2 hit (50 %, asked: at least 60 %); 3 of 9 signals wrong or needless
+/// (33 %, asked: at most 40 %)".
 fn held_against(sum: &WizardMeasures, criterion: &TrainingCriterion) -> String {
-    let wrong = sum.wrong_targets.unwrap_or(0) + sum.needless.unwrap_or(0);
+    let wrong = sum.wrong_or_needless().unwrap_or(0);
     let share = |part: u64, all: u64| match all {
         0 => "-".to_string(),
         all => format!("{:.0} %", 100.0 * part as f64 / all as f64),
     };
     let (hits, episodes) = (sum.hits.unwrap_or(0), sum.episodes.unwrap_or(0));
     format!(
-        "{hits} of {episodes} hit ({}, asked: at least {:.0} %); {wrong} of {} wrong ({}, asked: at most {:.0} %)",
+        "{hits} of {episodes} hit ({}, asked: at least {:.0} %); {wrong} of {} wrong or needless ({}, asked: at most {:.0} %)",
         share(hits, episodes),
         100.0 * criterion.hits,
         count(sum.signals, "signal", "signals"),
@@ -248,7 +247,7 @@ pub struct JudgedSignal {
     /// Time of the signal on the trial's clock, in nanoseconds.
     pub clock_ns: SessionTime,
     pub signal: Signal,
-    /// Judgement of the signal: "hit", "again", "harmless", "late", "wrong" or "needless".
+    /// Judgement of the signal: "hit", "repeated", "harmless", "late", "wrong" or "needless".
     pub worth: String,
 }
 

@@ -44,7 +44,7 @@ use tomcom_session::protocol::{ProtocolEvent, StudyProtocolState};
 use tomcom_session::settings::{Condition, ParticipantKind};
 use tomcom_session::wall_display::{AnswerDevice, DisplayEvent};
 use tomcom_session::watcher::{SenderComparisonFollower, SenderComparisonSettings};
-use tomcom_session::wizard_log::{WizardLog, clock_at};
+use tomcom_session::wizard_log::{WizardSummary, clock_at};
 use tomcom_session::{Event, LogHeader, Session, TimelineEntry, TimelineEvent, TimestampedEvent, TrialPhase};
 
 #[derive(Debug)]
@@ -147,7 +147,6 @@ pub fn read(
     let kitchen = log.kitchen.clone();
     let mut cost = kept.take(&kitchen);
     let mut rows = RowCollector::new(name);
-    let mut hands = WizardLog::default();
     let mut robot = RobotEventTally::new(header.session.robot.arm);
     let mut regret = RegretSum::default();
     let mut answers = Vec::new();
@@ -167,7 +166,6 @@ pub fn read(
         let was_on = was_running || session.phase == TrialPhase::Paused;
         let change = pass.apply(&line.stamped).map_err(|error| log.refused(&line, error))?;
         let follower = pass.follower();
-        hands.note(&line.stamped, &follower.session);
         probes.note(&line.stamped, &change, follower);
         regret.note(&kitchen, &mut cost, &change);
         display.note(&line.stamped, &follower.session);
@@ -202,8 +200,10 @@ pub fn read(
     }
     trial.additional_presses_per_order = regret.per_order(trial.orders);
     trial.wizard = (header.session.trial.condition == Condition::Wizard).then(|| match &known {
-        Some(known) if known.basis != BeliefSource::Recorded => hands.measures_by_raters(follower, &known.episodes),
-        _ => hands.figures(follower).measures,
+        Some(known) if known.basis != BeliefSource::Recorded => {
+            WizardSummary::measures_by_raters(follower, &known.episodes)
+        }
+        _ => WizardSummary::from_follower(follower).measures,
     });
     let details = details(&pass, &judged, known.as_ref(), &lanes, probes);
     trial.offers = OfferSummary::from_offers(&details.offers);

@@ -173,15 +173,15 @@ fn wizard_rows(wizard: &WizardMeasures) -> [Vec<Markup>; 11] {
     let row = |what: &str, value: Option<u64>| cells([&what, &count(value)]);
     [
         row("signals sent", Some(wizard.signals)),
-        row("signals revoked", Some(wizard.taken_back)),
+        row("signals taken back", Some(wizard.taken_back)),
         row("false beliefs that led to errors", wizard.episodes),
-        row("false beliefs that led to errors, with a signal (hits)", wizard.hits),
-        row("false beliefs that led to errors, without a signal (omissions)", wizard.omissions),
-        row("repeated signals about the same false belief", wizard.repeated),
-        row("late signals, after the belief was corrected", wizard.late),
-        row("signals about a wrong target", wizard.wrong_targets),
-        row("signals without any false belief", wizard.needless),
-        row("signals about a false belief that led to no error", wizard.harmless),
+        row("of these hit by a signal", wizard.hits),
+        row("of these missed", wizard.omissions),
+        row("repeated: about a false belief that was hit already", wizard.repeated),
+        row("late: about a false belief that was corrected just before", wizard.late),
+        row("wrong: about a right belief while another was false", wizard.wrong_targets),
+        row("needless: while no belief was false", wizard.needless),
+        row("harmless: about a false belief that led to no error", wizard.harmless),
         cells([
             &"median seconds from the start of a false belief to its signal",
             &number(wizard.latency_s.map(|times| times.median), 1),

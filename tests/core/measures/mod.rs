@@ -322,11 +322,11 @@ fn a_wizards_signals_are_held_against_what_was_believed_wrong() {
     let signals = [
         (4.0, vec![1], SignalVerdict::Needless),
         (12.5, vec![1], SignalVerdict::Hit { latency_s: 2.5, period: 0 }),
-        (14.0, vec![1], SignalVerdict::Again),
+        (14.0, vec![1], SignalVerdict::Repeated),
         (21.0, vec![2], SignalVerdict::Harmless),
         // An order with its recipe: the one that led to an error counts.
-        (22.0, vec![2, 1], SignalVerdict::Again),
-        (24.0, vec![5], SignalVerdict::WrongTarget),
+        (22.0, vec![2, 1], SignalVerdict::Repeated),
+        (24.0, vec![5], SignalVerdict::Wrong),
         // Right again since two presses; and since too long.
         (34.0, vec![1], SignalVerdict::Late),
         (40.0, vec![1], SignalVerdict::Needless),
@@ -346,8 +346,11 @@ fn a_wizards_signals_are_held_against_what_was_believed_wrong() {
     assert_eq!(counts, [2, 1, 1, 2, 1].map(Some));
     let named: u64 = counts.iter().flatten().sum::<u64>() + found.hits.unwrap_or(0);
     assert_eq!(named, found.signals, "every signal is one of these");
+    let words = ["3 false beliefs with errors: 2 hit, 1 missed", "2 repeated, 1 late, 1 wrong, 2 needless, 1 harmless"];
+    assert_eq!(found.words(), Some(words.map(str::to_string)));
     // Of people nobody knows.
     let unknown = WizardMeasures::from_signals(&all, None);
+    assert_eq!(unknown.words(), None);
     assert_eq!((unknown.signals, unknown.hits, unknown.omissions), (9, None, None));
     // Two of three hit; three of nine wrong.
     let met = |hits: f64, wrong: f64| TrainingCriterion { hits, wrong }.is_met(&found);

@@ -527,21 +527,23 @@ fn a_training_says_what_to_do_keeps_what_it_said_and_ends_when_that_is_read() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.session.spec.console.visibility = WizardVisibility::State;
     stage.model.playback = Some(Playback::new("seed1-S001".to_string()));
-    let task = ["Press . to start.", "A hit is the first signal about a false belief that leads to an error."];
+    let task = ["A hit is the first signal about a false belief that leads to an error."];
     let lesson = TrainingPanel {
         task: task.map(str::to_string).to_vec(),
         score: "0 hit".to_string(),
         ..TrainingPanel::default()
     };
     stage.model.lesson = Some(lesson.clone());
-    stage.shows((120, 40), &["A hit is the first signal"]);
+    stage.shows((120, 40), &["Press . to start.", "A hit is the first signal"]);
+    stage.model.lesson = Some(TrainingPanel { begun: true, ..lesson.clone() });
+    assert!(!stage.screen((120, 40)).contains("to start"), "{}", stage.screen((120, 40)));
     let said = |seconds: f64, level: NoticeLevel, text: &str| {
         let clock = at(seconds);
         TrainingFeedback { clock, level, text: text.to_string() }
     };
     let long = "missed, with 2 errors: recipe of tuna nigiri: believed salmon nigiri, truly tuna nigiri; right would have been: recipe of order 1";
     let feedback = vec![
-        said(4.0, NoticeLevel::Done, "highlight plate: a signal already told this"),
+        said(4.0, NoticeLevel::Done, "highlight plate: repeated: a signal already told this"),
         said(9.0, NoticeLevel::Refused, long),
         said(12.0, NoticeLevel::Done, "recipe of order 1: hit: the belief has been false for 3.1 s"),
     ];

@@ -12,6 +12,7 @@ use tomcom::console::view::click_targets;
 use tomcom::console::view::regions::PanelAreas;
 use tomcom::console::{ConsoleCommand, ConsoleMessage, KeyBindings, KeyFileBindings, mouse, update};
 use tomcom_core::communication::offer::{OfferedAdvice, OfferedCommunication};
+use tomcom_session::replay::ReplayLandmark;
 
 use super::{SIZES, Stage, input, panels};
 use crate::support::*;
@@ -216,6 +217,24 @@ fn the_scrub_bar_and_the_timeline_seek_in_a_replay() {
 }
 
 #[test]
+fn the_scrub_bar_marks_errors_signals_and_false_beliefs_with_their_keys() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.model.keys =
+        KeyBindings::replay(&stage.session.kitchen, &KeyFileBindings::default()).expect("the keys are free");
+    let marks = [(10.0, ReplayLandmark::Signal), (20.0, ReplayLandmark::FalseBelief), (30.0, ReplayLandmark::Error)];
+    let marks = marks.map(|(seconds, what)| (at(seconds), what)).into();
+    stage.model.playback = Some(Playback { length: at(40.0), marks, ..Playback::new("S001".to_string()) });
+    for size in SIZES {
+        stage.model.size = size;
+        let screen = stage.screen(size);
+        let bar = screen.lines().find(|line| line.contains(" recording ")).expect("the bar");
+        let bar = bar.split_once(" recording ").map_or("", |(_, bar)| bar);
+        let places = ["s", "b", "e"].map(|key| bar.find(key).expect("a mark"));
+        assert!(places.is_sorted(), "{bar}");
+    }
+}
+
+#[test]
 fn every_place_of_the_panel_is_its_place_on_the_display_and_back() {
     for name in ["sushi", "burger"] {
         let kitchen = kitchen(name);
@@ -331,7 +350,7 @@ fn a_paste_filters_a_list_and_chooses_nothing() {
     assert_eq!(stage.control('k'), None);
     assert_eq!(stage.paste(Some("stop the robot\n")), None);
     let Some(Dialog::Palette(cursor)) = &stage.model.dialog else { panic!("{:?}", stage.model.dialog) };
-    assert_eq!(cursor.filter, "stoptherobot");
+    assert_eq!(cursor.filter, "stop the robot");
     assert_eq!(stage.key(KeyCode::Esc), None);
     assert_eq!(stage.key(KeyCode::Esc), None);
     stage.wait(1.0);

@@ -34,6 +34,7 @@ fn rated(party: CodingRaters, given: RaterCodes) -> Stage {
         button: buttons[index % buttons.len()].to_string(),
         effective: index % 3 != 1,
         why: "order 1 needs tuna".to_string(),
+        shown: "human hand empty".to_string(),
     };
     stage.model.coding = Some(RaterSession::new(party, (0..12).map(error).collect(), given));
     stage.model.playback = Some(Playback { event: 201, events: 1300, ..Playback::new("2026-03-14-P01-1".to_string()) });
@@ -67,6 +68,22 @@ fn codebook_and_errors_stand_beside_the_kitchen_at_three_sizes() {
         }
     }
     check_snapshot("console", "rater_120x40", stage.screen((120, 40)));
+}
+
+#[test]
+fn the_list_has_whole_words_and_says_what_was_needed_and_shown() {
+    let mut stage = rater(RaterCodes::default());
+    for size in SIZES {
+        stage.model.size = size;
+        // In a narrow list a sign says that a press had no effect.
+        let no_effect = if size.0 == 120 { "cutting board ○" } else { "cutting board (no effect)" };
+        stage.shows(size, &["assembly board", no_effect]);
+    }
+    stage.model.size = (120, 40);
+    let screen = stage.screen((120, 40));
+    assert!(screen.contains("3 assembly board: order 1 needs") && !screen.contains("needs tu…"), "{screen}");
+    stage.model.size = (200, 60);
+    stage.shows((200, 60), &["order 1 needs tuna", "before: human hand empty"]);
 }
 
 #[test]

@@ -7,6 +7,7 @@ use tomcom::console::key_action::KeyLayer;
 use tomcom::console::lists::Picker;
 use tomcom::console::lists::PickerKind;
 use tomcom::console::{ConsoleCommand, KeyBindings, KeyFileBindings};
+use tomcom_core::measures::wizard_performance::{FalseBeliefPeriod, WizardMeasures, WizardSignal};
 use tomcom_session::event::WizardScreenContent;
 
 use super::{SIZES, Stage, input, type_in};
@@ -254,21 +255,38 @@ fn a_pause_shows_the_recipes_to_who_plays_the_participant() {
 }
 
 #[test]
-fn signals_are_judged_at_the_end_where_the_wizard_may_know() {
-    let end = |participant, visibility| {
-        let mut stage = Stage::sushi(participant);
-        stage.session.spec.console.visibility = visibility;
-        stage.at(30.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
-        stage.screen((80, 24))
+fn the_card_counts_signals_in_the_words_of_the_study() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.at(30.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
+    let unknown = stage.screen((80, 24));
+    assert!(unknown.contains("2 by the wizard, 1 taken back") && !unknown.contains("needless"), "{unknown}");
+    let sent = |seconds: f64, aspect: u8| WizardSignal {
+        clock: at(seconds),
+        press: 0,
+        aspects: vec![AspectId(aspect)],
+        to_display_ms: None,
+        taken_back: false,
     };
-    let judged = "2 about a false belief, 0 late, 0 needless";
-    let known = end(ParticipantKind::Simulated, WizardVisibility::State);
-    assert!(known.contains("2 by the wizard, 1 taken back") && known.contains(judged), "{known}");
-    assert!(!known.contains("estimated"), "{known}");
-    let estimated = end(ParticipantKind::Display, WizardVisibility::Belief);
-    assert!(estimated.contains(&format!("estimated    {judged}")), "{estimated}");
-    let blind = end(ParticipantKind::Display, WizardVisibility::State);
-    assert!(blind.contains("2 by the wizard") && !blind.contains("needless"), "{blind}");
+    let period = FalseBeliefPeriod { aspect: AspectId(0), began: at(5.0), corrected: None, errors: 2 };
+    stage.model.wizard = WizardMeasures::from_signals(&[sent(6.0, 0), sent(7.0, 1)], Some(&[period]));
+    for words in stage.model.wizard.words().expect("known beliefs") {
+        for size in SIZES {
+            let screen = stage.screen(size);
+            assert!(screen.contains(&words), "{words}:\n{screen}");
+        }
+    }
+}
+
+#[test]
+fn the_card_says_what_an_exclusion_has_done_and_how_to_take_it_back() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.at(30.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
+    stage.shows_everywhere(&["^l exclude the trial"]);
+    let reason = "the participant talked to somebody in the corridor for a long time and read the recipes from a phone";
+    stage.at(31.0, Event::TrialExcluded { reason: reason.to_string() });
+    stage.shows_everywhere(&["read the recipes", "from a phone", "left out of the analysis; ^l includes it again"]);
+    stage.at(32.0, Event::TrialIncluded);
+    assert!(!stage.screen((120, 40)).contains("left out"), "{}", stage.screen((120, 40)));
 }
 
 #[test]

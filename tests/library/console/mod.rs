@@ -17,7 +17,6 @@ use tomcom::console::console_model::Playback;
 use tomcom::console::console_model::RecordingStatus;
 use tomcom::console::panels::screen;
 use tomcom::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, KeyFileBindings, update, view};
-use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::mind::dirichlet::{Dirichlet, DirichletBelief};
 use tomcom_core::mind::model::PriorModel;
 use tomcom_session::history::belief_track::BeliefSnapshot;
@@ -57,7 +56,6 @@ impl Stage {
         self.model.clock = self.model.now;
         let stamped = TimestampedEvent { seq: self.seq, time: self.model.now, event };
         apply(&mut self.session, &stamped).expect("the event fits");
-        self.model.signals.judge(&stamped, &self.session);
         self.seq += 1;
     }
 
@@ -88,8 +86,6 @@ impl Stage {
         }
         let moment = BeliefSnapshot::new(&kitchen, self.session.state, &self.belief, self.model.now, by_gaze);
         self.model.belief.note(moment);
-        let (state, belief) = (self.session.state, &self.belief);
-        self.model.signals.note(&self.session, |aspect| belief.p_truth(&kitchen, state, aspect) < FALSE_BELOW);
     }
 
     /// A sushi kitchen in the middle of a trial: the wizard has just shown a recipe.

@@ -12,6 +12,7 @@ use tomcom::console::lists::{RecordingPicker, RecordingReply};
 use tomcom::console::view::recordings_page::draw_recordings;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleCommand, KeyBindings, KeyFileBindings};
+use tomcom_study::analysis::recording_summary::RecordingList;
 
 use super::{SIZES, Stage, input, type_in};
 use crate::support::*;
@@ -144,16 +145,55 @@ fn a_replay_has_its_actions_in_the_palette_and_the_space_bar_does_nothing() {
     assert_eq!(stage.key(KeyCode::Enter), Some(ConsoleCommand::Move(ReplayAction::Faster)));
 }
 
+/// The rows that are found, the best first.
+fn found<'a>(typed: &str, rows: &[&'a str]) -> Vec<&'a str> {
+    let cursor = ListCursor { filter: typed.to_string(), at: 0 };
+    cursor.found(rows.iter().map(|row| row.to_string())).into_iter().map(|index| rows[index]).collect()
+}
+
 #[test]
-fn rows_are_found_by_parts_and_by_beginnings_of_words() {
-    let keeps = |typed: &str, text: &str| ListCursor { filter: typed.to_string(), at: 0 }.keeps(text);
-    for typed in ["", "tuna", "tunaraw", "una", "traw", "tr", "TunaR", "raw"] {
-        assert!(keeps(typed, "tuna raw"), "{typed}");
+fn whole_words_and_beginnings_go_before_letters_with_others_between() {
+    for typed in ["", "tuna", "tunaraw", "una", "traw", "tr", "TunaR", "raw", "raw tuna"] {
+        assert_eq!(found(typed, &["tuna raw"]), ["tuna raw"], "{typed}");
     }
-    for typed in ["rawtuna", "tx", "tw", "tunaraws"] {
-        assert!(!keeps(typed, "tuna raw"), "{typed}");
+    for typed in ["rawtuna", "tx", "tunaraws", "raw salmon"] {
+        assert!(found(typed, &["tuna raw"]).is_empty(), "{typed}");
     }
-    assert!(keeps("20260314", "2026-03-14 P07"), "signs do not count");
+    assert_eq!(found("20260314", &["2026-03-15 P04", "2026-03-14 P07"]), ["2026-03-14 P07"], "signs do not count");
+    assert_eq!(found("rec", &["next record", "recipe", "tear candle", "rec"]), ["rec", "next record", "recipe"]);
+    assert_eq!(found("trd", &["tear candle", "third"]), ["third", "tear candle"], "letters that are nearer go first");
+}
+
+#[test]
+fn a_typed_code_leaves_its_own_recordings() {
+    let rows = (1..=21).map(|number| {
+        let name = format!("2026-11-28-P{number:02}-7");
+        [&format!("P{number:02}"), "wizard", "person", "2026-11-28 09:21", "9:07", "whole", &name]
+            .map(str::to_string)
+            .to_vec()
+    });
+    let headings =
+        RecordingList::HEADINGS.into_iter().filter(|heading| *heading != "errors").map(str::to_string).collect();
+    let mut picker = RecordingPicker::new("Which recording?".to_string(), headings, rows.collect());
+    for (typed, code) in [("p21", "P21"), ("p07", "P07"), ("P1", "P10"), ("p07 wizard", "P07")] {
+        picker.cursor = ListCursor { filter: typed.to_string(), at: 0 };
+        let left = picker.left();
+        assert_eq!(picker.rows[left[0]][0], code, "{typed}");
+        assert_eq!(left.len(), if typed == "P1" { 10 } else { 1 }, "{typed}");
+    }
+}
+
+#[test]
+fn exit_is_for_leaving() {
+    for mut stage in [Stage::sushi(ParticipantKind::Simulated), Stage::new("burger", ParticipantKind::Keyboard)] {
+        for (typed, first) in [("exit", KeyAction::Quit), ("exclude", KeyAction::Manual(ManualAction::Exclude))] {
+            stage.control('k');
+            type_in(&mut stage, typed);
+            let Some(Dialog::Palette(cursor)) = &stage.model.dialog else { panic!("no palette") };
+            assert_eq!(actions(&stage.model, cursor)[0].action, first, "{typed}");
+            stage.model.dialog = None;
+        }
+    }
 }
 
 #[test]
@@ -170,14 +210,14 @@ fn a_key_file_that_has_the_palettes_key_for_something_else_is_still_read() {
 }
 
 fn picker() -> RecordingPicker {
-    let row = |code: &str, condition: &str, state: &str, name: &str| {
-        [code, condition, "2026-03-14 10:22", "15:00", state, name].map(str::to_string).to_vec()
+    let row = |code: &str, condition: &str, kind: &str, state: &str, name: &str| {
+        [code, condition, kind, "2026-03-14 10:22", "15:00", state, name].map(str::to_string).to_vec()
     };
-    let headings = ["code", "condition", "date", "length", "state", "recording"].map(str::to_string).to_vec();
+    let headings = ["code", "condition", "kind", "date", "length", "state", "recording"].map(str::to_string).to_vec();
     let rows = vec![
-        row("P07", "unassisted", "whole", "2026-03-14-P07-1"),
-        row("P07", "wizard", "cut", "2026-03-14-P07-2"),
-        row("P08", "wizard", "excluded", "2026-03-15-P08-1"),
+        row("P08", "wizard", "person", "excluded", "2026-03-15-P08-1"),
+        row("P07", "wizard", "person", "ended early", "2026-03-14-P07-2"),
+        row("P07", "unassisted", "practice", "whole", "2026-03-14-P07-1"),
     ];
     RecordingPicker::new("Which recording of sessions?".to_string(), headings, rows)
 }
@@ -201,15 +241,19 @@ fn columns_that_tell_recordings_apart_stay_where_not_all_fit() {
         picker.rows = (1..=3)
             .map(|trial| {
                 let name = format!("2026-03-14-{code}-{trial}");
-                [code, "wizard with advice", "2026-03-14 10:22", "15:00", "unreadable", &name]
+                [code, "wizard with advice", "practice", "2026-03-14 10:22", "15:00", "ended early", &name]
                     .map(str::to_string)
                     .to_vec()
             })
             .collect();
         let screen = screen(&picker);
-        assert!(!screen.contains("length") && screen.contains("wizard with advice"), "{screen}");
+        assert!(!screen.contains("length"), "{screen}");
+        if code == "P07" {
+            let whole = ["wizard with advice", "practice", "2026-03-14 10:22", "ended early"];
+            assert!(whole.iter().all(|words| screen.contains(words)), "{screen}");
+        }
         for trial in 1..=3 {
-            assert!(screen.contains(&format!("{code}-{trial} ")), "trial {trial} in\n{screen}");
+            assert!(screen.contains(&format!("-{trial} ")), "trial {trial} in\n{screen}");
         }
     }
 }

@@ -11,6 +11,7 @@ use tomcom_session::plan::{QuestionnaireSpec, TutorialStepKind};
 use tomcom_session::preflight_checks::PreflightVerdict;
 use tomcom_session::probes::{ProbeEndReason, ProbeOrigin, ProbeQuestion, ProbeSubject};
 use tomcom_session::protocol::StudyPhase;
+use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::tutorial::{TutorialEvent, TutorialPageTurner};
 
 use super::{SIZES, Stage, input};
@@ -111,9 +112,17 @@ fn only_enter_confirms_answers_and_a_reason_to_go_on() {
     for arrow in [KeyCode::Right, KeyCode::Left] {
         assert!(matches!(give(&mut stage, arrow), ProtocolEvent::ItemShown { .. }), "arrows go between items");
     }
-    // An answer shows the next item.
-    for _ in 0..items {
-        assert!(matches!(give(&mut stage, KeyCode::Char('3')), ProtocolEvent::ItemAnswered { .. }));
+    // A digit chooses, and only enter goes on: every item is answered once.
+    for item in 0..items {
+        stage.wait(1.0);
+        assert_eq!(stage.key(KeyCode::Char('2')), None);
+        assert_eq!(stage.key(KeyCode::Char('3')), None, "the choice changes until enter");
+        assert_eq!(stage.session.protocol.as_ref().map(|protocol| protocol.item), Some(item));
+        for size in SIZES {
+            stage.shows(size, &["[3]"]);
+        }
+        let event = give(&mut stage, KeyCode::Enter);
+        assert!(matches!(event, ProtocolEvent::ItemAnswered { answer: AnswerValue::Number(3), .. }), "{event:?}");
     }
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Right), None, "{}", stage.notice());
@@ -163,7 +172,11 @@ fn options_are_chosen_with_digits() {
     give(&mut stage, KeyCode::Enter);
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Char('4')), None, "the item has three options");
-    assert_eq!(answered(&mut stage, KeyCode::Char('2')), r#"handedness "left""#);
+    assert_eq!(stage.key(KeyCode::Char('2')), None);
+    stage.wait(1.0);
+    assert_eq!(stage.key(KeyCode::Left), None);
+    assert!(stage.notice().contains("enter keeps the answer"), "{}", stage.notice());
+    assert_eq!(answered(&mut stage, KeyCode::Enter), r#"handedness "left""#);
     // Of several, each key chooses one or takes it back; the item stays until enter.
     assert_eq!(answered(&mut stage, KeyCode::Char('3')), r#"vision_aids ["lenses"]"#);
     assert_eq!(answered(&mut stage, KeyCode::Char('2')), r#"vision_aids ["glasses","lenses"]"#);
@@ -175,9 +188,13 @@ fn options_are_chosen_with_digits() {
     stage.model.size = (80, 24);
     check_snapshot("console", "item_choice_80x24", stage.screen((80, 24)));
     assert_eq!(give(&mut stage, KeyCode::Enter), ProtocolEvent::ItemShown { item: "colour_vision".to_string() });
-    assert_eq!(give(&mut stage, KeyCode::Delete), ProtocolEvent::ItemSkipped { item: "colour_vision".to_string() });
+    stage.key(KeyCode::Delete);
+    look_at(&mut stage, &["no answer"]);
+    assert_eq!(give(&mut stage, KeyCode::Enter), ProtocolEvent::ItemSkipped { item: "colour_vision".to_string() });
     for _ in 0..3 {
-        give(&mut stage, KeyCode::Char('5'));
+        stage.wait(1.0);
+        assert_eq!(stage.key(KeyCode::Char('5')), None);
+        give(&mut stage, KeyCode::Enter);
     }
     let screen = stage.screen((120, 40));
     assert!(screen.contains("31 years") && screen.contains("q. x y") && screen.contains("glasses"), "{screen}");

@@ -114,6 +114,12 @@ fn a_blinded_replay_shows_no_signal_and_the_same_kitchen() {
     assert!(is_signal(&open) > 0, "there are signals to be hidden");
     assert_eq!(open.errors, blind.errors);
     assert_eq!(blind.landmark(ReplayLandmark::Signal, false), None);
+    let signal = open.landmark(ReplayLandmark::Signal, false).expect("a signal");
+    open.wind(signal);
+    let named = open.named(ReplayLandmark::Signal).expect("a signal");
+    let number = open.landmarks(ReplayLandmark::Signal).len();
+    assert!(named.starts_with(&format!("signal {number} of {number}: ")), "{named}");
+    assert!(named.ends_with(", by the wizard"), "{named}");
     // Steps do not stop where something is hidden.
     let steps = |film: &mut SeekableReplay| {
         film.wind(0);
@@ -138,6 +144,9 @@ fn a_replay_goes_from_one_error_signal_or_false_belief_to_the_next_and_back() {
     while let Some(position) = film.landmark(ReplayLandmark::Error, true) {
         film.wind(position);
         visited.push(film.time());
+        let named = film.named(ReplayLandmark::Error).expect("an error");
+        assert!(named.starts_with(&format!("error {} of {}: ", visited.len(), errors.len())), "{named}");
+        assert!(named.split(": ").count() > 2, "press and reason: {named}");
     }
     assert_eq!(visited, errors);
     let back = film.landmark(ReplayLandmark::Error, false).expect("the error before");
@@ -147,6 +156,9 @@ fn a_replay_goes_from_one_error_signal_or_false_belief_to_the_next_and_back() {
     film.wind(0);
     let wrong = film.landmark(ReplayLandmark::FalseBelief, true).expect("something is believed wrong");
     film.wind(wrong);
+    let named = film.named(ReplayLandmark::FalseBelief).expect("something is believed wrong");
+    assert!(named.starts_with("false belief "), "{named}");
+    assert!(named.contains(": thinks ") && named.contains(", is "), "{named}");
     let moment = film.beliefs.until(film.time()).last().expect("an estimate");
     assert!(moment.held.iter().any(|held| held.is_false()), "{moment:?}");
 }

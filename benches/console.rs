@@ -16,6 +16,7 @@ use tomcom::console::{ConsoleModel, KeyBindings, KeyFileBindings, view};
 use tomcom::run::options::session_or_default;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_session::history::error_reasons::ExplainedError;
 use tomcom_session::Event;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::history::belief_track::BeliefSnapshot;
@@ -84,8 +85,8 @@ impl Stage {
             }
         }
         let judged = self.engine.judged();
-        let new = judged[self.judged..].iter().filter(|press| press.verdict.error);
-        self.model.errors.extend(new);
+        let kitchen = &self.engine.session().kitchen;
+        self.model.errors.extend(ExplainedError::among(kitchen, &judged[self.judged..]));
         self.judged = judged.len();
         (self.model.now, self.model.clock) = (now, now);
     }

@@ -78,7 +78,6 @@ fn read_or_tell(
         code: None,
         condition: None,
         arm: None,
-        kind: None,
         date: None,
         trial_s: None,
         errors: None,

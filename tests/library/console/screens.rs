@@ -373,7 +373,7 @@ fn orders_and_errors_are_explained_at_every_size() {
     let mut stage = Stage::sushi(ParticipantKind::Keyboard);
     stage.key(KeyCode::Tab);
     for size in SIZES {
-        stage.hides(size, &["shaped rice", "needs tuna"]);
+        stage.hides(size, &["□", "needs tuna"]);
     }
 }
 

@@ -240,9 +240,9 @@ fn share(cells: Rect, count: usize, index: usize) -> Rect {
 fn spot(item: &Item, region: Rect, display: Bounds) -> KitchenMapBox {
     let cells = match item.thing {
         KitchenMapElement::Location(_) => {
-            // Boxes leave an empty row between them where there is one; in a tall region, they grow.
+            // In a tall region, boxes grow and leave an empty row between them.
             let height = match region.height {
-                rows @ 0..=4 => rows.min(PLACE_LINES),
+                rows @ 0..=4 => rows,
                 rows => (rows - 1).min(6),
             };
             let width = region.width.saturating_sub(u16::from(region.width > MIN_CARD));

@@ -49,13 +49,15 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
         phase => stage_mark(brush, phase),
     };
     let part = |text: String, style: Style, rank: u8| HeadPart { text, style, rank, is_close: false };
-    let mut parts = vec![part("tomcom".to_string(), strong, 5), part(format!("{mark}{stage} "), style, 0)];
+    // The name of the program is the first to go on a small screen.
+    let name_rank = if is_small { u8::MAX } else { 5 };
+    let mut parts = vec![part("tomcom".to_string(), strong, name_rank), part(format!("{mark}{stage} "), style, 0)];
     let code = &session.spec.participant.code;
     match (&model.coding, &model.playback, session.step()) {
         // A rater must not know in which condition the trial was.
         (Some(coding), ..) => parts.push(part(format!("rater {}", coding.name()), strong, 0)),
         (None, None, Some((step, _))) => {
-            parts.push(part(code.clone(), strong, 0));
+            parts.push(HeadPart { is_close: true, ..part(code.clone(), strong, 0) });
             parts.push(part(format!("{} {}", step.label(), condition(session)), strong, 4));
         }
         _ => parts.push(part(code.clone(), strong, 0)),

@@ -120,8 +120,9 @@ impl ShownOffer<'_> {
         let since = belief.and_then(|belief| belief.since);
         let age = since.map_or(String::new(), |since| format!(" for {}", session.age(since, model.now)));
         let thinks = if p >= 0.5 { "thinks" } else { "may think" };
-        let mut said = vec![format!("{thinks} {believes}, {truth}"), format!("{}{age}", percent(p))];
+        let mut said = vec![format!("{thinks} {believes}, {truth}")];
         said.extend(self.replaces(session));
+        said.push(format!("{}{age}", percent(p)));
         said.extend(match (&reason.prevents, &reason.instead) {
             (Some(button), _) => Some(format!("next error: {}", wording::location(button))),
             (None, Some(button)) => Some(format!("waits instead of: {}", wording::location(button))),

@@ -275,7 +275,8 @@ impl PanelAreas {
         let (rest, belief) = bottom(rest, beliefs);
         let (rest, gaze) = bottom(rest, 1);
         let (kitchen, agents) = bottom(rest, 1);
-        let (robot, shown) = left(agents, agents.width / 2);
+        // The words of a signal are longer than those of a press.
+        let (robot, shown) = left(agents, agents.width / 2 - 4);
         PanelAreas { orders, kitchen, robot, shown, gaze, belief, presses, timeline, ..self }
     }
 

@@ -216,7 +216,7 @@ fn display_line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Ses
         _ => wording::signal(&shown.signal),
     };
     let (left_s, share) = time_left(session, shown, model);
-    let bar = if columns < 44 { 4 } else { 8 };
+    let bar = if columns < 44 { 0 } else { 8 };
     let room = columns.saturating_sub(bar + 7);
     let end = brush.parts(x, y, room, &[(&title, TextRole::Signal)]);
     let by = format!(" by {}", wording::sender(shown.by));

@@ -341,8 +341,8 @@ fn the_robot_is_held_skipped_and_driven_by_keys() {
     let by = Sender::Wizard;
     assert_eq!(input(stage.control('p')), Some(Event::RobotHeld { by }));
     stage.at(22.7, Event::RobotHeld { by });
-    stage.shows((80, 24), &["ROBOT HELD", "‖"]);
-    let screen = stage.screen((120, 40));
+    stage.shows((80, 24), &["ROBOT HELD"]);
+    let screen = stage.shows((120, 40), &["‖"]);
     assert!(screen.contains("HELD") && screen.contains("^p releases the robot"), "{screen}");
     stage.wait(1.0);
     assert_eq!(input(stage.control('s')), Some(Event::RobotSkipped { by }));

@@ -140,9 +140,10 @@ impl RerunWriter {
         for row in rows {
             let (entity, components) = (entity(lane, row), components(row));
             self.streams.iter().for_each(|one| one.log(&entity, true, &components));
-            if let EntityData::SightRadius(_) = row.shown {
-                let points = archetypes::Points2D::update_fields().with_radii([SIGHT]).as_serialized_batches();
-                self.streams.iter().for_each(|one| one.log(&trail_of(&entity), true, &points));
+            if let EntityData::SightRadius(radius) = row.shown {
+                let circle = archetypes::Ellipses2D::update_fields().with_half_sizes([[radius as f32; 2]]);
+                let circle = circle.with_line_radii([LINE]).as_serialized_batches();
+                self.streams.iter().for_each(|one| one.log(&around(&entity), true, &circle));
             }
         }
     }
@@ -165,11 +166,11 @@ impl RerunWriter {
             if !self.streams.iter().any(is_at_once) {
                 continue;
             }
-            let (components, trail) = (components(row), sight.map(|sight| [sight_point(sight)]));
+            let (components, circle) = (components(row), sight.map(|sight| [circle(sight)]));
             for one in self.streams.iter_mut().filter(|one| is_at_once(one)) {
                 if sight.is_none() || one.shows_gaze(moment.time) {
                     one.log(&entity, false, &components);
-                    trail.iter().for_each(|points| one.log(&trail_of(&entity), false, &batches(points)));
+                    circle.iter().for_each(|circle| one.log(&around(&entity), false, &batches(circle)));
                 }
             }
         }
@@ -236,20 +237,29 @@ impl OpenStream {
         if times.is_empty() {
             return;
         }
-        let timeline = |index: usize| times.iter().map(move |values| values[index]).collect::<Vec<i64>>();
-        let indexes = [
-            TimeColumn::new_duration_nanos(TRIAL_TIME, timeline(0)),
-            TimeColumn::new_duration_nanos(SESSION_TIME, timeline(1)),
-            TimeColumn::new_sequence(STEP, timeline(2)),
-        ];
-        let colours_of = || colours.iter().copied();
-        let circles =
-            archetypes::Ellipses2D::update_fields().with_centers(at.iter().copied()).with_colors(colours_of());
-        let points = archetypes::Points2D::update_fields().with_positions(at).with_colors(colours_of());
+        let indexes = |of: &[usize]| {
+            let timeline = |index: usize| of.iter().map(|&nth| times[nth][index]).collect::<Vec<i64>>();
+            [
+                TimeColumn::new_duration_nanos(TRIAL_TIME, timeline(0)),
+                TimeColumn::new_duration_nanos(SESSION_TIME, timeline(1)),
+                TimeColumn::new_sequence(STEP, timeline(2)),
+            ]
+        };
+        // A circle at every sample would cost as much again as the points.
+        let (all, mut some) = ((0..times.len()).collect::<Vec<usize>>(), vec![0]);
+        for &nth in &all {
+            if some.last().is_some_and(|&last| times[nth][1] - times[last][1] >= GAZE_EVERY.0 as i64) {
+                some.push(nth);
+            }
+        }
+        let points = archetypes::Points2D::update_fields().with_positions(at.iter().copied());
+        let circles = archetypes::Ellipses2D::update_fields().with_centers(some.iter().map(|&nth| at[nth]));
+        let (points, circles) =
+            (points.with_colors(colours.iter().copied()), circles.with_colors(some.iter().map(|&nth| colours[nth])));
         // Writing fails only if components cannot be serialised, and these components can.
-        if let (Ok(circles), Ok(points)) = (circles.columns_of_unit_batches(), points.columns_of_unit_batches()) {
-            let _ = self.stream.send_columns(entity.as_str(), indexes.clone(), circles);
-            let _ = self.stream.send_columns(trail_of(&entity), indexes, points);
+        if let (Ok(points), Ok(circles)) = (points.columns_of_unit_batches(), circles.columns_of_unit_batches()) {
+            let _ = self.stream.send_columns(entity.as_str(), indexes(&all), points);
+            let _ = self.stream.send_columns(around(&entity), indexes(&some), circles);
         }
     }
 
@@ -325,12 +335,11 @@ fn parts(shown: &EntityData) -> Vec<Part> {
         EntityData::Labels(labels) => vec![Box::new(labels_in_2d(labels))],
         EntityData::Picture(picture) => picture_in_2d(picture),
         EntityData::Sight { at, colour } => {
-            let circle = archetypes::Ellipses2D::update_fields().with_centers([at.map(|length| length as f32)]);
-            vec![Box::new(circle.with_colors([colour_of(*colour)]))]
+            let point = archetypes::Points2D::update_fields().with_positions([at.map(|length| length as f32)]);
+            vec![Box::new(point.with_colors([colour_of(*colour)]))]
         }
-        EntityData::SightRadius(radius) => {
-            let circle = archetypes::Ellipses2D::update_fields().with_half_sizes([[*radius as f32; 2]]);
-            vec![Box::new(circle.with_line_radii([LINE]))]
+        EntityData::SightRadius(_) => {
+            vec![Box::new(archetypes::Points2D::update_fields().with_radii([SIGHT]))]
         }
         EntityData::Points(points) => vec![Box::new(points_in_3d(points))],
         EntityData::Solids(solids, colour) => solids_in_3d(solids, colour_of(*colour)),
@@ -392,14 +401,14 @@ fn picture_in_2d(picture: &ScenePicture) -> Vec<Part> {
     vec![Box::new(place), Box::new(image.with_draw_order(LOWEST + f32::from(picture.layer)))]
 }
 
-/// Entity of the last gaze points, of which the viewer shows those of the last seconds.
-fn trail_of(entity: &str) -> String {
-    format!("{entity}/trail")
+/// Entity of the circle around the newest gaze point. The viewer shows the points of the last seconds, but one circle.
+fn around(gaze: &str) -> String {
+    format!("{gaze}/around")
 }
 
-fn sight_point((at, colour): ([f64; 2], Color)) -> Part {
+fn circle((at, colour): ([f64; 2], Color)) -> Part {
     let at = at.map(|length| length as f32);
-    Box::new(archetypes::Points2D::update_fields().with_positions([at]).with_colors([colour]))
+    Box::new(archetypes::Ellipses2D::update_fields().with_centers([at]).with_colors([colour]))
 }
 
 fn points_in_3d(points: &[ScenePoint]) -> archetypes::Points3D {

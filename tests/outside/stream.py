@@ -61,7 +61,6 @@ def expected(log):
                 running = False
             case "gaze":
                 add("human/gaze")
-                add("human/gaze/trail")
             case "press" if running:
                 add(f"{event['agent']}/presses")
                 _, served = trial.press(event["agent"], event["button"])

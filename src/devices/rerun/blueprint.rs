@@ -12,9 +12,9 @@ use re_sdk::blueprint::{
 use re_sdk::external::re_log_types::{BlueprintActivationCommand, LogMsg};
 use re_sdk::{AsComponents, RecordingStream, RecordingStreamBuilder, SerializedComponentBatch};
 use re_sdk_types::blueprint::archetypes::{
-    EyeControls3D, PlotLegend, ScalarAxis, TextLogColumns, VisibleTimeRanges, VisualBounds2D,
+    EyeControls3D, PlotLegend, ScalarAxis, TextLogColumns, TimeAxis, VisibleTimeRanges, VisualBounds2D,
 };
-use re_sdk_types::blueprint::components::Corner2D;
+use re_sdk_types::blueprint::components::{Corner2D, LinkAxis};
 use re_sdk_types::datatypes::{Range2D, TimeInt, TimeRange, TimeRangeBoundary, VisibleTimeRange};
 
 use crate::scene::WIDE;
@@ -111,12 +111,12 @@ impl ViewerLayout {
 fn alone(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
     let arm = arm(lane, properties);
     let (beliefs, benefit) = (beliefs(lane, properties), benefit(lane, properties));
-    let probes = lanes(lane, "Probes: answers and estimate", &["human/probes/**"]);
+    let probes = lanes(lane, "Probes: answers and estimate", &["human/probes/**"], properties);
     let joints = series(lane, "Joint angles (degrees)", &["robot/joints/**"], properties);
     let forces = series(lane, "Force (N), hand (cm)", &["robot/force", "robot/hand_away"], properties);
-    let safety = lanes(lane, "Safety", &["robot/safety/**"]);
-    let below =
-        Horizontal::new([overview(lane), Tabs::new([arm, beliefs, benefit, probes, joints, forces, safety]).into()]);
+    let safety = lanes(lane, "Safety", &["robot/safety/**"], properties);
+    let tabs = Tabs::new([arm, beliefs, benefit, probes, joints, forces, safety]);
+    let below = Horizontal::new([overview(lane, properties), tabs.into()]).with_column_shares([3.0, 2.0]);
     let left = Vertical::new([kitchen(lane, properties), below.into()]).with_row_shares([5.0, 3.0]);
     let side = Vertical::new([now(lane), happened(lane, properties)]).with_row_shares([1.0, 1.0]);
     Horizontal::new([left.into(), side.into()]).with_column_shares([5.0, 3.0]).into()
@@ -124,7 +124,7 @@ fn alone(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike
 
 /// Viewer layout for one of several recordings side by side.
 fn beside(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
-    let curves = Tabs::new([overview(lane), beliefs(lane, properties), benefit(lane, properties)]);
+    let curves = Tabs::new([overview(lane, properties), beliefs(lane, properties), benefit(lane, properties)]);
     let words = Horizontal::new([now(lane), happened(lane, properties)]);
     Vertical::new([kitchen(lane, properties), curves.into(), words.into()]).with_row_shares([5.0, 3.0, 4.0]).into()
 }
@@ -158,7 +158,7 @@ fn kitchen(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLi
     // The display with the labels around it: the viewer by itself takes scaled pictures for larger than they are.
     let (x_range, y_range) = ([-30.0, WIDE + 30.0].into(), [-95.0, WIDE * 9.0 / 16.0 + 50.0].into());
     let view = with(view, "VisualBounds2D", &VisualBounds2D::new(Range2D { x_range, y_range }), properties);
-    // Only the points of the gaze's trail are shown for a time, on either of the clocks.
+    // Only gaze points are shown for a time, on either of the clocks.
     let last = |timeline: &str| VisibleTimeRange {
         timeline: timeline.into(),
         range: TimeRange {
@@ -167,8 +167,8 @@ fn kitchen(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLi
         },
     };
     let ranges = VisibleTimeRanges::new([TRIAL_TIME, SESSION_TIME].map(last));
-    let trail = path(lane, "human/gaze/trail");
-    with(view, &format!("ViewContents/overrides{trail}/visualizers"), &ranges, properties)
+    let gaze = path(lane, "human/gaze");
+    with(view, &format!("ViewContents/overrides{gaze}/visualizers"), &ranges, properties)
 }
 
 fn arm(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
@@ -197,14 +197,15 @@ fn benefit(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLi
     series(lane, "Net benefit of signals (presses)", &["assistant/benefit/**"], properties)
 }
 
-/// A view of states over time, as lanes with words.
-fn lanes(lane: &ShownRecording, name: &str, entities: &[&str]) -> ContainerLike {
+/// A view of states over time, as lanes with words; of all the time, also while data come.
+fn lanes(lane: &ShownRecording, name: &str, entities: &[&str], properties: &mut Vec<Property>) -> ContainerLike {
     let view = StateTimelineView::new(titled(lane, name)).with_origin(path(lane, ""));
-    view.with_contents(entities.iter().map(|entities| path(lane, entities))).into()
+    let view = view.with_contents(entities.iter().map(|entities| path(lane, entities)));
+    with(view, "TimeAxis", &TimeAxis::new().with_link(LinkAxis::LinkToGlobal), properties)
 }
 
-fn overview(lane: &ShownRecording) -> ContainerLike {
-    lanes(lane, "Errors, false beliefs, signals", &["error", "false/**", "signal"])
+fn overview(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
+    lanes(lane, "Errors, signals, false beliefs", &["error", "signal", "taken_for/**"], properties)
 }
 
 fn now(lane: &ShownRecording) -> ContainerLike {

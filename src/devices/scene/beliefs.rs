@@ -23,8 +23,8 @@ const ERRORS: &str = "error";
 /// Path of the lane with the present signal.
 const SIGNALS: &str = "signal";
 
-/// Beginning of the paths of lanes with false beliefs.
-pub const FALSE: &str = "false/";
+/// Beginning of the paths of lanes with what is believed falsely.
+pub const TAKEN_FOR: &str = "taken_for/";
 
 /// A belief about one state aspect.
 #[derive(Clone, Copy)]
@@ -50,6 +50,7 @@ pub struct BeliefScene {
     /// Parts of the page: the last press of the human with the false beliefs before it, the signal, what the assistant
     /// advises, and the estimate now.
     press: String,
+    held_before: String,
     is_error: bool,
     signal: String,
     pub advice: String,
@@ -67,7 +68,7 @@ fn held_truly(aspect: &str) -> String {
 }
 
 fn wrong(aspect: &str) -> String {
-    format!("{FALSE}{}", slug(aspect))
+    format!("{TAKEN_FOR}{}", slug(aspect))
 }
 
 /// Entity updates with the names and colours of the curves and marks.
@@ -152,7 +153,8 @@ impl BeliefScene {
             .map(|(aspect, told)| Held { aspect, believes: kitchen.worded(&told.believes), p_truth: told.p_truth })
             .collect();
         if let Some(before) = self.before.take_if(|_| self.is_error) {
-            self.press += &believed(kitchen, before, "Believed wrong before it, by the estimate", &held);
+            self.held_before = believed(kitchen, before, &held);
+            self.press += &titled("Believed wrong before it, by the estimate", &self.held_before);
         }
         self.estimated(session, &held)
     }
@@ -192,10 +194,14 @@ impl BeliefScene {
         }
         let unsure = held.iter().filter(|one| (FALSE_BELOW..KNOWN).contains(&one.p_truth));
         let unsure: Vec<String> = unsure.map(|one| format!("{} {}", named(kitchen, one), percent(one))).collect();
-        self.estimate = believed(kitchen, session.state, "Believed wrong now, by the estimate", held);
-        if self.estimate.is_empty() {
-            self.estimate = "\nNothing is believed wrong now, by the estimate.\n".to_string();
-        }
+        let wrong = believed(kitchen, session.state, held);
+        self.estimate = match wrong.as_str() {
+            "" => "\nNothing is believed wrong now, by the estimate.\n".to_string(),
+            wrong if self.is_error && wrong == self.held_before => {
+                "\nThe same is believed wrong now, by the estimate.\n".to_string()
+            }
+            wrong => titled("Believed wrong now, by the estimate", wrong),
+        };
         if !unsure.is_empty() {
             let below = KNOWN * 100.0;
             self.estimate += &format!("\nRight, but with a P(truth) below {below:.0} %: {}.\n", unsure.join(", "));
@@ -210,7 +216,8 @@ impl BeliefScene {
         let held: Vec<Held> = aspects
             .map(|(aspect, told)| Held { aspect, believes: kitchen.worded(&told.believes), p_truth: told.p_truth })
             .collect();
-        self.own = believed(kitchen, session.state, "Believed wrong before it, by the simulated participant", &held);
+        let wrong = believed(kitchen, session.state, &held);
+        self.own = titled("Believed wrong before it, by the simulated participant", &wrong);
         let is_false = |one: &&Held| one.p_truth < FALSE_BELOW;
         let row = |one: &Held| {
             EntityUpdate::new(held_truly(&kitchen.aspects[one.aspect].name), EntityData::Value(one.p_truth))
@@ -230,15 +237,19 @@ impl BeliefScene {
 
 /// False beliefs in Markdown, the most certain first; empty without any. A list, since the viewer breaks lines in lists, not
 /// in tables.
-fn believed(kitchen: &Kitchen, state: State, title: &str, held: &[Held]) -> String {
+fn believed(kitchen: &Kitchen, state: State, held: &[Held]) -> String {
     let mut wrong: Vec<&Held> = held.iter().filter(|one| one.p_truth < FALSE_BELOW).collect();
     wrong.sort_by(|a, b| a.p_truth.total_cmp(&b.p_truth));
     let line = |one: &&Held| {
         let (believes, truly) = (taken_for_what(kitchen, state, one), truth(kitchen, state, one.aspect));
         format!("- **{}**: **{believes}**, truly {truly} (P(truth) {})\n", named(kitchen, one), percent(one))
     };
-    let lines: String = wrong.iter().map(line).collect();
-    if lines.is_empty() { lines } else { format!("\n{title}:\n\n{lines}") }
+    wrong.iter().map(line).collect()
+}
+
+/// A list with its title; empty without lines.
+fn titled(title: &str, lines: &str) -> String {
+    if lines.is_empty() { String::new() } else { format!("\n{title}:\n\n{lines}") }
 }
 
 fn named(kitchen: &Kitchen, held: &Held) -> String {

@@ -113,8 +113,8 @@ pub fn landmark(row: &EntityUpdate) -> Option<String> {
             Some(text.clone())
         }
         (entity, EntityData::State(taken_for)) if !taken_for.is_empty() => {
-            let aspect = entity.strip_prefix(beliefs::FALSE)?;
-            Some(format!("false belief about {}: {taken_for}", wording::location(aspect)))
+            let aspect = entity.strip_prefix(beliefs::TAKEN_FOR)?;
+            Some(format!("false belief: {} taken for {taken_for}", wording::location(aspect)))
         }
         _ => None,
     }

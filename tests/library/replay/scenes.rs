@@ -1,7 +1,5 @@
 //! The scene that Rerun shows of a session.
 
-use std::collections::BTreeSet;
-
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_devices::scene::{EntityData, EntityUpdate, SceneInputs, SceneUpdate, SessionScene};
 use tomcom_session::history::wording;

@@ -178,7 +178,7 @@ fn errors_of_a_recording_are_listed_as_commands_that_open_the_viewer_there() {
     let told = String::from_utf8(output.stdout).expect("UTF-8");
     let line =
         |words: &str| told.lines().find(|line| line.contains(words)).unwrap_or_else(|| panic!("{words}: {told}"));
-    for words in ["# ERROR 1, human: ", "# ERROR 3, human: ", "# false belief about ", "# wizard: "] {
+    for words in ["# ERROR 1, human: ", "# ERROR 3, human: ", "# false belief: ", "# wizard: "] {
         let (command, _) = line(words).split_once("  # ").expect("a comment");
         let at = command.strip_prefix(&format!("tomcom review {recording} --at ")).expect("a command");
         // What is printed is taken: the refusal is of --errors beside it.

@@ -16,10 +16,10 @@ use tomcom::console::{ConsoleModel, KeyBindings, KeyFileBindings, view};
 use tomcom::run::options::session_or_default;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_session::history::error_reasons::ExplainedError;
 use tomcom_session::Event;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::history::belief_track::BeliefSnapshot;
+use tomcom_session::history::error_reasons::ExplainedError;
 
 /// Every redraw is one step of the console's clock later: at most 30 a second.
 const STEP_S: f64 = 1.0 / 30.0;

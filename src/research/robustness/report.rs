@@ -3,8 +3,8 @@
 
 use tomcom_core::base::text::{count, decimal};
 use tomcom_core::measures::flags::MOST_FALSE_FLAGS;
-use tomcom_study::report::STYLE;
 use tomcom_study::charts::{PlotAxis, SvgChart, document};
+use tomcom_study::report::STYLE;
 
 use super::table::{CohortRow, RobustnessTable};
 

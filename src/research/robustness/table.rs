@@ -14,8 +14,8 @@ use tomcom_core::measures::detection::{FalseBeliefDetection, TrialBeliefs, aspec
 use tomcom_core::measures::flags::{ThresholdChoice, chosen_thresholds};
 use tomcom_core::mind::choice::ChoiceParameters;
 use tomcom_study::analysis::likelihood::PressLogLikelihood;
-use tomcom_study::statistics::intervals;
 use tomcom_study::analysis::trial_summary::TrialSummary;
+use tomcom_study::statistics::intervals;
 
 /// Seed of the bootstrap's random numbers: the same trials give the same interval.
 const SEED: u64 = 1;

@@ -16,6 +16,7 @@ use crate::console::possible::is_possible_behind;
 use crate::console::preflight::{OVERRIDE, all_ok, checks};
 use crate::console::text_columns::{width, wrap};
 use crate::console::text_input::TextInput;
+use tomcom_core::base::text::count;
 use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict};
 use tomcom_session::{Session, TrialPhase};
 
@@ -187,11 +188,16 @@ pub fn note(brush: &mut Painter, screen: Rect, session: &Session, text: &TextInp
     let (title, marks) = match session.open_marks.as_slice() {
         [] => ("Note to be recorded".to_string(), String::new()),
         [(_, at), others @ ..] => {
-            let more = if others.is_empty() { String::new() } else { format!(" {} more marks follow.", others.len()) };
+            let more = match others.len() as u64 {
+                0 => String::new(),
+                more => format!(" {} to be worded follow.", count(more, "further mark", "further marks")),
+            };
             let clock = session.trial_clock_at(*at);
             (format!("The time mark at {clock}: its words"), format!("enter alone leaves it without words.{more} "))
         }
     };
+    // The title of a mark has no room for it beside; below it is said anyhow.
+    let remark = if marks.is_empty() { remark } else { "" };
     input_line(brush, screen, text, (&title, remark), &(marks + says));
 }
 

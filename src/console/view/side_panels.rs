@@ -146,7 +146,8 @@ fn robot_line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Sessi
     if session.robot.arm.mode == SafetyMode::Safeguard {
         // The time that is left is unknown until the hand is gone.
         let parts = [(label.as_str(), TextRole::Robot), (by, TextRole::Signal), (": hand in the way", TextRole::Text)];
-        brush.parts(x, y, columns, &parts);
+        let fits = parts.iter().map(|(text, _)| width(text)).sum::<u16>() <= columns;
+        brush.parts(x, y, columns, if fits { &parts } else { &[("hand in the way", TextRole::Text)] });
         return;
     }
     // The name of the button has priority over the length of the bar.

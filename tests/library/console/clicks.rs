@@ -148,7 +148,7 @@ fn hints_buttons_of_the_participant_and_beliefs_are_clicked() {
     stage.wait(0.2);
     assert_eq!(stage.click("pause"), None, "a double click pauses once");
     stage.click("switch");
-    assert!(matches!(input(stage.click("[g] cooking pot")), Some(Event::Press { .. })), "{}", stage.screen((120, 40)));
+    assert!(matches!(input(stage.click("[x] cooking pot")), Some(Event::Press { .. })), "{}", stage.screen((120, 40)));
     stage.wait(1.0);
     stage.click("switch");
     stage.click("1-5");

@@ -200,12 +200,12 @@ fn a_press_without_effect_says_why_and_a_switch_says_whose_the_keys_are() {
     stage.model.layer = KeyLayer::Participant;
     // The hand holds raw salmon, the assembly board a stack, the pot is empty.
     for (key, words) in [
-        ('e', "the press has no effect: the hand is full"),
-        ('a', "the press has no effect: the items cannot be stacked"),
-        ('v', "the press has no effect: the cooking pot is empty"),
-        ('b', "the press has no effect: the item is not accepted there"),
+        ('y', "the press has no effect: the hand is full"),
+        ('q', "the press has no effect: the items cannot be stacked"),
+        ('x', "the press has no effect: the cooking pot is empty"),
+        ('s', "the press has no effect: the item is not accepted there"),
         ('1', "the press has no effect: the plate is empty"),
-        ('z', "the press has no effect: raw salmon cannot be processed there"),
+        ('t', "the press has no effect: raw salmon cannot be processed there"),
     ] {
         stage.wait(1.0);
         assert!(matches!(input(stage.key(KeyCode::Char(key))), Some(Event::Press { .. })), "the press counts");

@@ -271,7 +271,8 @@ fn the_sheet_of_the_tutorial_tells_where_the_participant_is() {
                 }
                 break;
             }
-            for button in &step.presses {
+            // What the robot presses in its step is shown, and no press of the participant's.
+            for button in step.presses.iter().filter(|_| step.kind != TutorialStepKind::Robot) {
                 give(&mut stage, TutorialEvent::Pressed { button: button.clone() });
             }
             let (tutorial, _) = stage.session.tutorial().expect("a tutorial");

@@ -96,8 +96,9 @@ fn a_trial_is_excluded_and_included_by_one_key() {
     stage.wait(1.0);
     assert_eq!(input(stage.key(KeyCode::Enter)), Some(excluded.clone()));
     stage.at(40.0, excluded);
-    // The card is as wide as its longest line, and says which key takes it back.
-    stage.shows((120, 40), &[reason.as_str(), "^l include it again"]);
+    // The card has the whole reason, and says which key takes it back.
+    let lines = ["participant stopped: the participant had to leave after", "a telephone call from the kindergarten"];
+    stage.shows((120, 40), &[&lines[..], &["^l include it again"]].concat());
 }
 
 #[test]

@@ -169,7 +169,7 @@ fn items_are_answered_back_and_forth_and_confirmed() {
     assert!(verify(&run.close()).expect("readable").verified);
 }
 
-/// A terminal that reports no releases: the same answer again after 0.3 s is no held key. Enter is, which tells steps read.
+/// A terminal that reports no releases: the same digit again after 0.3 s is no held key. Enter is, which goes on.
 #[test]
 fn hasty_answers_are_all_taken() {
     let mut run = Run::new(&folder("hasty"), wanted(1, true));
@@ -178,14 +178,20 @@ fn hasty_answers_are_all_taken() {
     run.next_phase();
     let mut model = console_model(&run.engine.session().kitchen, &run.engine.session().spec, (80, 24));
     let items = run.engine.session().questionnaire().expect("it is asked").items.clone();
-    for (index, item) in items.iter().enumerate() {
-        model.clock = at(5.0 + 0.3 * index as f64);
-        let key = ConsoleMessage::Key(KeyEvent::new(KeyCode::Char('5'), KeyModifiers::NONE));
-        let Some(ConsoleCommand::Input(event)) = update(&mut model, run.engine.session(), key) else {
-            panic!("item {}: {:?}", item.id, model.notice)
-        };
-        assert_eq!(event, Event::Protocol(ProtocolEvent::ItemAnswered { item: item.id.clone(), answer: 5_u8.into() }));
-        assert_eq!(run.input(event), None);
+    let mut now_s = 5.0;
+    for item in &items {
+        for (code, after_s) in [(KeyCode::Char('4'), 0.3), (KeyCode::Char('5'), 0.3), (KeyCode::Enter, 1.0)] {
+            now_s += after_s;
+            model.clock = at(now_s);
+            let key = ConsoleMessage::Key(KeyEvent::new(code, KeyModifiers::NONE));
+            let command = update(&mut model, run.engine.session(), key);
+            let answered = ProtocolEvent::ItemAnswered { item: item.id.clone(), answer: 5_u8.into() };
+            let wanted = (code == KeyCode::Enter).then(|| ConsoleCommand::Input(Event::Protocol(answered)));
+            assert_eq!(command, wanted, "item {}: {:?}", item.id, model.notice);
+            if let Some(ConsoleCommand::Input(event)) = command {
+                assert_eq!(run.input(event), None);
+            }
+        }
     }
     for (gap_s, counts) in [(1.0, true), (0.3, false), (0.3, false), (0.3, true)] {
         model.clock = at(model.clock.as_secs_f64() + gap_s);

@@ -234,7 +234,8 @@ fn a_scene_shows_answers_of_probes_beside_the_estimate() {
                 assert!(estimate.ends_with(" %"), "{estimate}");
                 let line = format!("human answers, {about}: {said} (estimate: {estimate})");
                 let is_line = |row: &EntityUpdate| {
-                    row.entity == "happened" && matches!(&row.shown, EntityData::Words { text, .. } if *text == line)
+                    row.entity == "human/answers"
+                        && matches!(&row.shown, EntityData::Words { text, .. } if *text == line)
                 };
                 assert!(moment.rows.iter().any(is_line), "{line}");
                 lanes.extend([lane("answer"), lane("estimate")]);

@@ -131,7 +131,6 @@ fn a_folder_is_listed_and_is_no_recording_where_one_is_meant() {
     let whole = figures(&["replay", &format!("{out}/seed7-S001"), "--format", "json"], 0);
     assert_eq!((&rows[1]["errors"], &rows[1]["trial_s"]), (&whole["errors"], &whole["trial_s"]));
     assert_eq!((&rows[1]["condition"], &rows[1]["arm"]), (&"none".into(), &"none".into()));
-    assert_eq!((&rows[1]["simulated"], &rows[1]["practice"]), (&true.into(), &false.into()));
     // Figures of closed recordings are kept for the next list; what stands beside a log holds all the same.
     assert_eq!(figures(&["list", out, "--format", "json"], 0), list);
     check(&["exclude", &format!("{out}/seed7-S001"), "--reason", "a rehearsal"], 0);

@@ -160,7 +160,7 @@ fn a_kitchen_takes_no_key_from_the_console() {
     let cases = [
         ("signal = \"w\"", "signal = \"1\"", "the key \"1\" for \"order_2\", which the console has for"),
         ("signal = \"w\"", "signal = \"Q\"", "for \"order_2\", which \"order_1\" has already"),
-        ("key = \"x\"", "key = \"?\"", "the key \"?\" for \"trash\", which the console has for \"show this help\""),
+        ("key = \"g\"", "key = \"?\"", "the key \"?\" for \"trash\", which the console has for \"show this help\""),
     ];
     for (from, to, says) in cases {
         let path = folder.join("layout.toml");
@@ -194,7 +194,7 @@ fn the_printed_keys_are_a_key_file_that_changes_nothing_until_it_is_changed() {
         ("start_pause = \".\"", "start_pause = \"f10\""),
         ("note_5 = \"5\"", "note_5 = []"),
         ("assembly_board = \"a\"  # highlight", "assembly_board = \"5\"  # highlight"),
-        ("trash = \"x\"", "trash = \"f9\""),
+        ("trash = \"g\"", "trash = \"f9\""),
     ];
     let changed = changes.iter().fold(printed, |text, (from, to)| {
         assert!(text.contains(from), "{from} is not in\n{text}");

@@ -190,7 +190,7 @@ pub fn note(brush: &mut Painter, screen: Rect, session: &Session, text: &TextInp
         [(_, at), others @ ..] => {
             let more = match others.len() as u64 {
                 0 => String::new(),
-                more => format!(" {} to be worded follow.", count(more, "further mark", "further marks")),
+                more => format!(" {} after it.", count(more, "further mark", "further marks")),
             };
             let clock = session.trial_clock_at(*at);
             (format!("The time mark at {clock}: its words"), format!("enter alone leaves it without words.{more} "))

@@ -276,7 +276,7 @@ impl PanelAreas {
         let (rest, gaze) = bottom(rest, 1);
         let (kitchen, agents) = bottom(rest, 1);
         // The words of a signal are longer than those of a press.
-        let (robot, shown) = left(agents, agents.width / 2 - 4);
+        let (robot, shown) = left(agents, agents.width / 2 - 2);
         PanelAreas { orders, kitchen, robot, shown, gaze, belief, presses, timeline, ..self }
     }
 

@@ -133,7 +133,7 @@ fn a_time_mark_is_set_at_once_and_gets_its_words_when_the_trial_stands() {
     stage.wait(1.0);
     stage.shows((120, 40), &["time marks", "without words at 0:20, 0:21", "0 word the time marks"]);
     stage.key(KeyCode::Char('0'));
-    stage.shows((80, 24), &["The time mark at 0:20: its words", "1 more marks follow"]);
+    stage.shows((80, 24), &["The time mark at 0:20: its words", "1 further mark after it"]);
     type_in(&mut stage, "looked away");
     let worded = Event::MarkerWorded { marker: marks[0], note: "looked away".to_string() };
     assert_eq!(input(stage.key(KeyCode::Enter)), Some(worded.clone()));
@@ -202,7 +202,7 @@ fn a_press_without_effect_says_why_and_a_switch_says_whose_the_keys_are() {
     for (key, words) in [
         ('y', "the press has no effect: the hand is full"),
         ('q', "the press has no effect: the items cannot be stacked"),
-        ('x', "the press has no effect: the cooking pot is empty"),
+        ('c', "the press has no effect: the cooking pot is empty"),
         ('s', "the press has no effect: the item is not accepted there"),
         ('1', "the press has no effect: the plate is empty"),
         ('t', "the press has no effect: raw salmon cannot be processed there"),

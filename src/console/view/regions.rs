@@ -79,6 +79,8 @@ const ROBOT_ROWS: u16 = 5;
 const PRESS_LINES: u16 = 3;
 /// Least height of a wizard training's panel with its frame, in rows.
 const LESSON_ROWS: u16 = 8;
+/// Rows of its whole task in a column of a medium terminal.
+const TASK_ROWS: u16 = 13;
 
 /// Height in rows of a rater's error list without a panel of its own: progress, and three errors.
 const ERROR_LINES: u16 = 4;
@@ -131,7 +133,10 @@ impl PanelAreas {
                 PanelAreas { kitchen, lesson, presses: Rect::default(), ..self }
             }
             _ => {
-                let (events, lesson) = bottom(self.events, self.events.height / 2);
+                // The task has priority over what happened before.
+                let rows = TASK_ROWS.max(self.events.height / 2);
+                let rows = if self.events.height < rows + FRAME + 2 { self.events.height } else { rows };
+                let (events, lesson) = bottom(self.events, rows);
                 PanelAreas { events, lesson, ..self }
             }
         }

@@ -213,7 +213,7 @@ fn a_press_without_effect_says_why_and_a_switch_says_whose_the_keys_are() {
         assert!(stage.screen((80, 24)).contains(words), "{}", stage.screen((80, 24)));
     }
     stage.wait(1.0);
-    assert!(input(stage.key(KeyCode::Char('f'))).is_some());
+    assert!(input(stage.key(KeyCode::Char('w'))).is_some());
     assert_eq!(stage.notice(), "", "a press with an effect needs no words");
     for words in ["keys now send the wizard's signals", "keys now press the participant's buttons"] {
         stage.wait(1.0);

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use serde_json::Value;
 use tomcom::run::files::read_session;
@@ -85,7 +86,15 @@ fn first(session: &str, out: &str) -> Value {
 fn answer(terminal: &Terminal, key: &str) {
     terminal.see("How was it?");
     let confirms = || terminal.screen().contains("confirm the answers");
-    terminal.turn_until(key, "all answers", confirms);
+    let mut pressed = None;
+    terminal.wait("all answers", || {
+        // The key that goes on does nothing so soon after the last one.
+        if !confirms() && pressed.is_none_or(|at: Instant| at.elapsed() > Duration::from_secs(1)) {
+            [key, "Enter"].into_iter().for_each(|key| terminal.key(key));
+            pressed = Some(Instant::now());
+        }
+        confirms()
+    });
     terminal.turn_until("Enter", "the answers confirmed", || !confirms());
 }
 

@@ -1,6 +1,6 @@
 //! Scenarios: what should be said in a situation, and when to be silent. One file each in `tests/scenarios`.
 //!
-//! `cargo test --test library scenarios:: -- --nocapture` prints every answer.
+//! `cargo test -p tomcom-core --test core scenarios:: -- --nocapture` prints every answer.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

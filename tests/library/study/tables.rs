@@ -27,35 +27,44 @@ use crate::support::*;
 const PUBLISHED: [(CsvTable, &str); 10] = [
     (
         CsvTable::Participants,
-        "participant kind group trials trials_counted assisted_second error_rate_human_1 error_rate_human_2 error_rate_1 \
-         error_rate_2 sequence_length_1 sequence_length_2 recovery_s_1 recovery_s_2 order_s_1 order_s_2 presses_per_order_1 \
-         presses_per_order_2 press_s_1 press_s_2 additional_presses_per_order_1 additional_presses_per_order_2 errors_1 \
-         errors_2 probes_wrong_1 probes_wrong_2 consent_on consent_at consent_digest",
+        "participant kind group trials trials_counted assisted_second error_rate_human_1 error_rate_human_2 \
+         error_rate_1 error_rate_2 sequence_length_1 sequence_length_2 recovery_s_1 recovery_s_2 order_s_1 order_s_2 \
+         presses_per_order_1 presses_per_order_2 press_s_1 press_s_2 additional_presses_per_order_1 \
+         additional_presses_per_order_2 errors_1 errors_2 probes_wrong_1 probes_wrong_2 consent_on consent_at \
+         consent_digest",
     ),
     (
         CsvTable::Trials,
-        "recording participant kind seed group period condition assisted counts left_out ended arm human_presses robot_presses \
-         errors races error_rate_human error_rate beliefs_from belief_related_errors sequences sequence_length \
-         sequences_by_aspect sequence_length_by_aspect recovery_s orders order_s presses_per_order press_s signals duration_s \
-         protective_stops faults contacts peak_force_n reduced_s safeguard_s emergency_stops given_up_no_longer_useful \
-         given_up_stopped given_up_skipped given_up_driven given_up_out_of_reach given_up_singular given_up_obstructed \
-         given_up_hand_in_the_way given_up_no_click given_up_contact given_up_fault wizard_held wizard_skipped wizard_driven \
-         wizard_corrected useful_signals useless_signals sequences_any_aspect sequence_length_any_aspect additional_presses_per_order errors_about_orders \
-         errors_about_recipes errors_about_order_or_recipe errors_about_places",
+        "recording participant kind seed group period condition assisted counts left_out ended arm human_presses \
+         robot_presses errors races error_rate_human error_rate beliefs_from belief_related_errors sequences \
+         sequence_length sequences_by_aspect sequence_length_by_aspect recovery_s orders order_s presses_per_order \
+         press_s signals duration_s protective_stops faults contacts peak_force_n reduced_s safeguard_s \
+         emergency_stops given_up_no_longer_useful given_up_stopped given_up_skipped given_up_driven \
+         given_up_out_of_reach given_up_singular given_up_obstructed given_up_hand_in_the_way given_up_no_click \
+         given_up_contact given_up_fault wizard_held wizard_skipped wizard_driven wizard_corrected useful_signals \
+         useless_signals sequences_any_aspect sequence_length_any_aspect additional_presses_per_order \
+         errors_about_orders errors_about_recipes errors_about_order_or_recipe errors_about_places offers \
+         offers_taken offers_by_own_key offer_stood_s offer_reaction_s display_arm false_belief_episodes \
+         raters_same_belief raters_other_belief one_rater_belief wizard_hits wizard_omissions probe_questions \
+         probes_wrong study_arm planned_arm wizard_sees signal_contents unproven raters human_model \
+         initiative_presses display_lost display_lost_s",
     ),
-    (CsvTable::Questionnaires, "recording participant condition questionnaire item about reversed answer points"),
+    (
+        CsvTable::Questionnaires,
+        "recording participant condition questionnaire item about reversed answer points kind asked score",
+    ),
     (CsvTable::Tutorial, "recording participant tutorial step question first_answer right tries seconds"),
     (
         CsvTable::Concepts,
-        "recording participant concept parameter presses signals related prevented outside false_presses false_inside harmless \
-         contents useless beliefs_from lead_s",
+        "recording participant concept parameter presses signals related prevented outside false_presses false_inside \
+         harmless contents useless beliefs_from lead_s",
     ),
     (
         CsvTable::Actions,
-        "recording seq time_s agent press button effective since_s regret excess race error cause aspect second_aspect \
-         gain_nats sequence cause_estimated rater_1 rater_2 log_p consensus",
+        "recording seq time_s agent press button effective since_s regret excess race error cause aspect \
+         second_aspect gain_nats sequence cause_estimated rater_1 rater_2 log_p consensus false_since_s false_until_s",
     ),
-    (CsvTable::Communications, "recording lane time_s press kind target matched"),
+    (CsvTable::Communications, "recording lane time_s press kind target matched offer"),
     (
         CsvTable::Beliefs,
         "recording seq aspect truth estimate estimate_p_truth estimate_precision believed believed_p_truth",

@@ -11,7 +11,7 @@ from playwright.sync_api import sync_playwright
 
 # A gamepad with the standard buttons, which a test presses by setting `pressed`.
 GAMEPAD = """
-const pad = { index: 0, id: "mock", connected: true, mapping: "standard", timestamp: 0, axes: [],
+const pad = { index: 0, id: "mock", connected: true, mapping: "standard", timestamp: 0, axes: [0, 0, 0, 0],
   buttons: Array.from({ length: 17 }, () => ({ pressed: false, touched: false, value: 0 })) };
 window.pad = pad;
 navigator.getGamepads = () => [pad, null, null, null];
@@ -89,9 +89,10 @@ class Page:
             .filter(([kind]) => kind === "order").map(([, what]) => what.dish || null)""")
 
     def push(self, number):
-        """Pushes a button of the gamepad, and lets it go."""
+        """Pushes a button of the gamepad, and lets it go; 17 and 18 are its sticks, which are pushed down."""
+        stick = {17: 1, 18: 3}.get(number)
         for is_down in ("true", "false"):
-            self.ask(f"pad.buttons[{number}].pressed = {is_down}")
+            self.ask(f"pad.buttons[{number}].pressed = {is_down}" if stick is None else f"pad.axes[{stick}] = Number({is_down})")
             self.page.wait_for_timeout(20)
 
     def press(self, button, way):

@@ -264,7 +264,9 @@ impl Card {
             .iter()
             .flat_map(|(name, text, role)| {
                 let names = std::iter::once(name.as_str()).chain(std::iter::repeat(""));
-                names.zip(wrap(text, room)).map(move |(name, line)| (name, line, *role))
+                // Wrapping would close up the spaced letters of who plays.
+                let lines = if width(text) <= room { vec![text.clone()] } else { wrap(text, room) };
+                names.zip(lines).map(move |(name, line)| (name, line, *role))
             })
             .collect();
         let lines = self.key_lines(columns.saturating_sub(4));

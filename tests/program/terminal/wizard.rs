@@ -56,7 +56,7 @@ fn check_wizard(session: &str) {
     assert_eq!(terminal.count("session_ended"), 1);
     assert_eq!(terminal.count("\"kind\":\"preflight\""), 1);
     for open in ["note", "help", "end_trial", "quit"] {
-        let seen = "\"room\":\"medium\",\"panels\":[\"kitchen\",\"belief\",\"recommendation\"";
+        let seen = "\"room\":\"medium\",\"panels\":[\"orders\",\"kitchen\",\"belief\",\"presses\",\"recommendation\"";
         let log = terminal.log();
         let mut lines = log.lines().filter(|line| line.contains(seen));
         assert!(lines.any(|line| line.contains(&format!("\"dialog\":\"{open}\""))), "{open}:\n{log}");

@@ -216,12 +216,12 @@ impl RaterSession {
         }
     }
 
-    /// Coding progress in words: "12/31 errors coded, 3 since opening".
+    /// Coding progress in words: "12/31 coded, 3 since opening".
     pub fn progress(&self) -> String {
         let (what, all, coded) = (self.verb(), self.errors.len(), self.coded());
         match self.coded_now() {
             0 => format!("{coded}/{all} errors {what}"),
-            now => format!("{coded}/{all} errors {what}, {now} since opening"),
+            now => format!("{coded}/{all} {what}, {now} since opening"),
         }
     }
 

@@ -413,6 +413,7 @@ def has_phases(tomcom, browser, folder):
             page.page.wait_for_timeout(400)  # a touch so soon after the last one is its double
             page.page.keyboard.press("6") if number % 2 else page.page.click('[data-rate="4"]')
         page.wait_for("!Stage.shown().question.item")
+        page.page.wait_for_timeout(400)
         page.page.click('[data-does="confirm"]')
         page.wait_for("!Stage.shown().question")
         page.close()

@@ -135,7 +135,7 @@ impl Painter<'_> {
         let strong = self.style(TextRole::Strong);
         self.text(area.x + 1, area.y, room, &title, strong);
         let columns: u16 = remark.iter().map(|(text, _)| width(text)).sum();
-        if columns > 0 && width(&title) + columns + 2 < room {
+        if columns > 0 && width(&title) + columns <= room {
             let begins = area.right() - 3 - columns;
             self.text(begins, area.y, columns + 2, &" ".repeat(usize::from(columns + 2)), line);
             self.parts(begins + 1, area.y, columns, remark);

@@ -263,7 +263,7 @@ pub fn draw_training(brush: &mut Painter, regions: &PanelAreas, model: &ConsoleM
     let Some(lesson) = model.lesson.as_ref().filter(|_| area.area() > 0) else { return };
     let inside = match regions.screen_size {
         ScreenSize::Small => area,
-        _ => brush.panel(area, "Training", &lesson.score),
+        _ => brush.panel(area, "Score", &lesson.score),
     };
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     let mut y = inside.y;

@@ -99,7 +99,7 @@ fn an_aborted_trial_is_done_again_in_a_recording_of_its_own() {
     terminal.key("C-x");
     terminal.see("Abort the trial: why?");
     terminal.key("Enter");
-    terminal.see("Words beside the reason");
+    terminal.see("enter without words gives the reason alone");
     terminal.key_logs("Enter", "\"trial_aborted\",\"reason\":\"participant stopped\"");
     terminal.see("^n repeat the trial");
     terminal.key("C-n");

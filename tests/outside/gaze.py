@@ -121,7 +121,7 @@ def send_among_nonsense(console):
                 # So much nonsense is told before the trial; it is started all the same.
                 console.keys(".")
                 console.wait_for("gaze stream .* malformed")
-                console.keys("o", "Tab", "e", "g", "v")
+                console.keys("o", "Tab", "y", "x", "c")
         # A tracker that goes in the middle of a line; the next one begins when all of it was read.
         tracker.sendall(b'{"x": 0.5, "y"')
         tracker.close()

@@ -41,11 +41,14 @@ def main():
         (recording,) = (asked.folder / "recordings").iterdir()
         log = Log(recording)
 
-        def wait_for(event, what):
-            until = time.monotonic() + 60
+        def wait_for(event, what, again=b""):
+            until, pressed = time.monotonic() + 60, time.monotonic()
             while not any(event in line for line in log.new_lines()):
                 assert time.monotonic() < until, f"{what}: {event} did not come\n{console.text()}"
                 time.sleep(0.002)
+                if again and time.monotonic() > pressed + 0.3:
+                    console.write(again)
+                    pressed = time.monotonic()
 
         for case in range(asked.cases):
             before = prefix(rng)
@@ -58,8 +61,9 @@ def main():
             console.write(b" ")
             wait_for(b"robot_stopped", f"case {case}, {before}")
             slowest = max(slowest, time.monotonic() - pressed)
+            # After a lone escape the console asks whether to quit: the first key only closes that question.
             console.write(b"\x12")
-            wait_for(b"robot_resumed", f"case {case}, {before}")
+            wait_for(b"robot_resumed", f"case {case}, {before}", again=b"\x12")
         log.new_lines()
         console.write(b"\x1b[200~please call me\x1b[201~")
         console.wait_for("pasted text is not taken for keys")

@@ -6,7 +6,7 @@
 //! all aspects have the same probability. The inclusion probability of each drawn aspect is recorded, so that an
 //! analysis can weight answers by its inverse (Horvitz and Thompson 1952).
 //!
-//! A question shows what could be there, at most [`MOST_CHOICES`] answers: nothing comes first, then the others in random
+//! A question shows what could be there, at most `MOST_CHOICES` answers: nothing comes first, then the others in random
 //! order. Where more is possible, what is shown depends on the location and on the orders, which everybody sees, and on
 //! chance; not on what is there, nor on what the recipes say beside the ingredients. The last answer is then
 //! [`SOMETHING_ELSE`], which is right where the truth is not shown.

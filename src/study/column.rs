@@ -1,5 +1,5 @@
 //! Columns of tables for other programs: one row per observation, one column per variable (Wickham 2014, "Tidy Data").
-//! Each column is declared once, as an entry of [`columns`]; header lines, rows, the data dictionary and the sidecar files
+//! Each column is declared once, as an entry of `columns!`; header lines, rows, the data dictionary and the sidecar files
 //! of BIDS are generated from these entries.
 
 use std::borrow::Cow;

@@ -186,7 +186,7 @@ fn hasty_answers_are_all_taken() {
             let key = ConsoleMessage::Key(KeyEvent::new(code, KeyModifiers::NONE));
             let command = update(&mut model, run.engine.session(), key);
             let answered = ProtocolEvent::ItemAnswered { item: item.id.clone(), answer: 5_u8.into() };
-            let wanted = (code == KeyCode::Enter).then(|| ConsoleCommand::Input(Event::Protocol(answered)));
+            let wanted = (code == KeyCode::Enter).then_some(ConsoleCommand::Input(Event::Protocol(answered)));
             assert_eq!(command, wanted, "item {}: {:?}", item.id, model.notice);
             if let Some(ConsoleCommand::Input(event)) = command {
                 assert_eq!(run.input(event), None);

@@ -156,7 +156,7 @@ def check_tobii(tomcom, folder):
         assert to in shown, f"{to}:\n{shown}"
         code = re.search(r"pairing code ([A-Z0-9]{6})", shown)[1]
         console.key("\x1b")
-        console.wait_for(rf"  pairing code {code}")
+        console.wait_for(rf"gaze sender +pairing code {code}")
         for wrong, told in ((["--pair", "WRONG2"], "does not take the pairing code WRONG2"), ([], "it wants --pair CODE")):
             with bridge("tobii", ["--to", to, *wrong], log, environment) as sender:
                 if wrong:

@@ -99,6 +99,9 @@ fn before(session: &Session, model: &ConsoleModel) -> Card {
         let name = if index == 0 { "devices" } else { "" };
         facts.push(fact(name, text.trim().to_string(), role));
     }
+    // The card covers the gaze's panel, and who starts the sender needs the code.
+    let pairing = model.gaze_pairing.as_ref().and_then(|pairing| pairing.line(session, model.now));
+    facts.extend(pairing.map(|code| fact("gaze sender", code, TextRole::Strong)));
     let mut keys = Vec::new();
     keys.extend(model.keys.chord_for(&KeyAction::Advance).map(|key| (key, "start the trial".to_string())));
     let preflight = KeyAction::Manual(ManualAction::Preflight);

@@ -263,10 +263,15 @@ pub fn draw_training(brush: &mut Painter, regions: &PanelAreas, model: &ConsoleM
     let Some(lesson) = model.lesson.as_ref().filter(|_| area.area() > 0) else { return };
     let inside = match regions.screen_size {
         ScreenSize::Small => area,
-        _ => brush.panel(area, "Score", &lesson.score),
+        _ => brush.panel(area, "Training", ""),
     };
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     let mut y = inside.y;
+    if regions.screen_size != ScreenSize::Small {
+        let quiet = brush.style(TextRole::Quiet);
+        brush.text(x, y, columns, &lesson.score, quiet);
+        y += 1;
+    }
     for (clock, text, role) in training_lines(lesson, model) {
         let indent = if clock.is_empty() { 0 } else { CLOCK };
         for (row, line) in wrap(&text, columns.saturating_sub(indent)).iter().enumerate() {

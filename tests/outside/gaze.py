@@ -274,7 +274,7 @@ def check_standing_still(tomcom, scratch):
             with connect() as tracker:
                 send_by_schedule(tracker, t, 200, 12, 0.0)
             stopper.wait()
-            console.wait_for("no samples arrive now")
+            console.wait_for("gaze idle")
             console.quit()
         (recording,) = (scratch / name).iterdir()
         events = recorded(recording)

@@ -147,48 +147,33 @@ impl PreparedSession {
                 let mut header = LogHeader::new(spec.clone(), trial, files.kitchen.layout, files.kitchen.recipes);
                 header.keys = files.keys;
                 let engine = SessionEngine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen)).without_causes();
-                let (first, time, place) = (Vec::new(), SessionTime::ZERO, RecordingPlace::In(out));
-                Ok(PreparedSession {
-                    engine,
-                    header,
-                    first,
-                    consent: None,
-                    time,
-                    compare: None,
-                    place,
-                    participants_done: None,
-                })
+                Ok(PreparedSession::begins(engine, header, RecordingPlace::In(out)))
             }
             SessionStart::Again { header, kitchen, out } => {
                 let engine =
                     SessionEngine::for_header(kitchen.clone(), &header, CostToGo::new(kitchen)).without_causes();
-                let (header, place) = (*header, RecordingPlace::In(out));
-                Ok(PreparedSession {
-                    engine,
-                    header,
-                    first: Vec::new(),
-                    consent: None,
-                    time: SessionTime::ZERO,
-                    compare: None,
-                    place,
-                    participants_done: None,
-                })
+                Ok(PreparedSession::begins(engine, *header, RecordingPlace::In(out)))
             }
             SessionStart::Continued(recording) => {
                 let resumed = resume(&recording)?;
                 let place = RecordingPlace::After(resumed.folder, resumed.lock);
-                let (header, first, time) = (resumed.header, resumed.first, resumed.time);
-                Ok(PreparedSession {
-                    engine: resumed.engine.without_causes(),
-                    header,
-                    first,
-                    consent: None,
-                    time,
-                    compare: None,
-                    place,
-                    participants_done: None,
-                })
+                let begins = PreparedSession::begins(resumed.engine.without_causes(), resumed.header, place);
+                Ok(PreparedSession { first: resumed.first, time: resumed.time, ..begins })
             }
+        }
+    }
+
+    /// A session from its first moment, with nothing beside it.
+    fn begins(engine: SessionEngine, header: LogHeader, place: RecordingPlace) -> PreparedSession {
+        PreparedSession {
+            engine,
+            header,
+            first: Vec::new(),
+            consent: None,
+            time: SessionTime::ZERO,
+            compare: None,
+            place,
+            participants_done: None,
         }
     }
 

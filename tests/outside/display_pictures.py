@@ -58,7 +58,6 @@ def chosen(scene, kitchen):
         "tutorial-recipes": {**every["tutorial: cards"], "tutorial": recipes},
         "tutorial-question": {**every["tutorial: question"], "tutorial": question},
         "probe-question": every["probe: place"],
-        "probe-stack": every["probe: stack"],
         "probe-recipe": every["probe: recipe"],
         "running": running,
         "recipe": {**running, "signal": {"recipe": {"order": order, "dish": dish, "items": items_of(kitchen)[dish]}}},

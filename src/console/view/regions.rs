@@ -79,8 +79,8 @@ const ROBOT_ROWS: u16 = 5;
 const PRESS_LINES: u16 = 3;
 /// Least height of a wizard training's panel with its frame, in rows.
 const LESSON_ROWS: u16 = 8;
-/// Rows of its whole task in a column of a medium terminal.
-const TASK_ROWS: u16 = 13;
+/// Rows of its score and its whole task in a column of a medium terminal.
+const TASK_ROWS: u16 = 14;
 
 /// Height in rows of a rater's error list without a panel of its own: progress, and three errors.
 const ERROR_LINES: u16 = 4;

@@ -66,7 +66,8 @@ pub fn beliefs(session: &Session, model: &ConsoleModel) -> Vec<EstimatedBelief> 
         let since = belief_track::wrong_since(moments, index);
         EstimatedBelief { aspect, standing, thinks, truth, p, since, cost: costs[index] }
     });
-    let mut beliefs: Vec<EstimatedBelief> = told.collect();
+    // A recipe that nobody ordered matters only once it is ordered.
+    let mut beliefs: Vec<EstimatedBelief> = told.filter(|belief| place(session, belief.aspect).is_some()).collect();
     beliefs.sort_by(|a, b| {
         let is_told = |belief: &EstimatedBelief| offered.contains(&belief.aspect);
         let by_cost = || b.cost.total_cmp(&a.cost);
@@ -116,14 +117,16 @@ fn costs(session: &Session) -> Vec<f64> {
     costs
 }
 
-/// The kitchen location at which the belief is shown: the location itself or, for a recipe, the first order of its
-/// dish. The signal about this location tells the aspect.
+/// The kitchen location at which the belief is shown: the location itself or, for a recipe, the order on offer or else the
+/// first order of its dish. The signal about this location tells the aspect.
 pub fn place(session: &Session, aspect: AspectId) -> Option<LocationId> {
     match session.kitchen.aspects[aspect.index()].kind {
         AspectKind::Location(location) => Some(location),
         AspectKind::Recipe(dish) => {
-            let mut orders = session.kitchen.wanted(session.state).filter(|(_, wanted)| *wanted == dish);
-            orders.next().map(|(order, _)| order)
+            let orders = || session.kitchen.wanted(session.state).filter(|(_, wanted)| *wanted == dish);
+            let offered = session.offers.open().and_then(|offer| offer.signal()?.location(&session.kitchen));
+            let found = orders().find(|(order, _)| Some(*order) == offered).or(orders().next());
+            found.map(|(order, _)| order)
         }
     }
 }

@@ -132,6 +132,8 @@ pub struct ConsoleModel {
     pub help_from: usize,
     /// Scroll position of the list of events: number of newer entries that are skipped.
     pub events_back: usize,
+    /// Scroll position of the beliefs: number of beliefs that are skipped.
+    pub beliefs_from: usize,
     /// Scroll position of the timeline: seconds before the present.
     pub timeline_back_s: u32,
     pub focused: bool,
@@ -206,6 +208,7 @@ impl ConsoleModel {
             focus: None,
             help_from: 0,
             events_back: 0,
+            beliefs_from: 0,
             timeline_back_s: 0,
             focused: true,
             pointer: None,

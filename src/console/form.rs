@@ -84,10 +84,8 @@ pub(super) fn stroke(session: &Session, code: KeyCode, advances: bool) -> Option
         KeyCode::Backspace => Some(SheetKey::Undo),
         KeyCode::Delete if shown.is_some() => Some(SheetKey::Skip),
         KeyCode::Char(digit @ '0'..='9') => Some(SheetKey::Digit(digit as u8 - b'0')),
-        KeyCode::Char(letter)
-            if shown.is_some_and(|form| is_typed(&form)) && (letter.is_alphabetic() || letter == '-') =>
-        {
-            Some(SheetKey::Letter(letter))
+        KeyCode::Char(letter) if letter.is_alphabetic() || letter == '-' => {
+            input_of_sheet(session).map(|_| SheetKey::Letter(letter))
         }
         _ => None,
     }
@@ -113,6 +111,7 @@ pub(super) fn write(model: &mut ConsoleModel, session: &Session, stroke: SheetKe
             let last = protocol.ticks.iter().rposition(|done| *done)?;
             send_protocol(model, session, ProtocolEvent::Ticked { step: last + 1, done: false })
         }
+        (FormContent::Steps { .. }, SheetKey::Letter(letter)) => begin_typing(model, protocol, letter),
         (FormContent::Steps { .. }, _) => refuse(model, "enter ticks the step, backspace unticks the last one"),
         (FormContent::Questions(_), _) if protocol.confirmed => match stroke {
             SheetKey::Confirm => leave(model, session),
@@ -266,11 +265,22 @@ fn answer_input(protocol: &StudyProtocolState) -> TextInput {
     }
 }
 
-/// The text input that a typed letter would open on the sheet, if the sheet shows an item that is answered by typing.
+/// The text input that a typed letter would open on the sheet, if the sheet shows an item that is answered by typing, or
+/// a question of the debriefing.
 pub(super) fn input_of_sheet(session: &Session) -> Option<TextInput> {
+    if debriefing_question(session).is_some() {
+        return Some(TextInput::default());
+    }
     let Some(FormContent::Questions(questionnaire)) = sheet(session) else { return None };
     let protocol = session.protocol.as_ref().filter(|protocol| !protocol.confirmed)?;
     questionnaire.form(protocol.item).filter(is_typed).map(|_| answer_input(protocol))
+}
+
+/// The open step of the debriefing. Words typed there become a note that begins with the step.
+pub fn debriefing_question(session: &Session) -> Option<&str> {
+    let PhaseSpec::Debriefing { steps } = session.study_phase()? else { return None };
+    let open = session.protocol.as_ref()?.ticks.iter().position(|done| !done)?;
+    steps.get(open).map(String::as_str)
 }
 
 /// Handles a key in the text input of an answer. An invalid answer stays in the input, and a notice gives the reason.
@@ -281,6 +291,20 @@ pub(super) fn type_answer(
     code: KeyCode,
 ) -> Option<ConsoleCommand> {
     model.dialog = None;
+    if let Some(question) = debriefing_question(session) {
+        return match code {
+            KeyCode::Esc => None,
+            KeyCode::Enter => {
+                let (note, said) = (format!("{question} {}", line.text()), "recorded as a note; enter ticks the step");
+                send(model, session, Event::Marker { note }, NoticeLevel::Done, said)
+            }
+            _ => {
+                line.key(code);
+                model.dialog = Some(Dialog::Answer(line));
+                None
+            }
+        };
+    }
     let (questionnaire, protocol) = (session.questionnaire()?, session.protocol.as_ref()?);
     let (item, form) = (questionnaire.items.get(protocol.item)?.id.clone(), questionnaire.form(protocol.item)?);
     match code {

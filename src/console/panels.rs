@@ -2,7 +2,7 @@
 //! Neither affects the participant.
 
 use super::actions::differ;
-use super::beliefs::visibility;
+use super::beliefs::{BeliefCorrectness, beliefs, visibility};
 use super::console_model::{ComparisonAction, ConsoleModel, Dialog};
 use super::form::sheet;
 use super::key_action::ViewAction;
@@ -21,7 +21,7 @@ pub fn look(model: &mut ConsoleModel, session: &Session, look: ViewAction) {
     match look {
         ViewAction::All => {
             (model.alone, model.focus, model.events_back, model.timeline_back_s) = (None, None, 0, 0);
-            model.belief_focus = None;
+            (model.belief_focus, model.beliefs_from) = (None, 0);
             if let Some(coding) = &mut model.coding {
                 coding.chosen = None;
             }
@@ -46,7 +46,12 @@ pub fn look(model: &mut ConsoleModel, session: &Session, look: ViewAction) {
 /// Whether a panel is at full size, or an earlier time shown: what the key of one step back undoes.
 pub(super) fn is_away(model: &ConsoleModel) -> bool {
     let has_chosen = model.coding.as_ref().is_some_and(|coding| coding.chosen.is_some());
-    model.alone.is_some() || model.focus.is_some() || model.events_back > 0 || model.timeline_back_s > 0 || has_chosen
+    model.alone.is_some()
+        || model.focus.is_some()
+        || model.events_back > 0
+        || model.beliefs_from > 0
+        || model.timeline_back_s > 0
+        || has_chosen
 }
 
 /// Whether the key that opens a panel opens the selected difference of a comparison: while no other panel has the focus.
@@ -88,12 +93,16 @@ pub fn leaf(model: &mut ConsoleModel, look: ViewAction) {
     };
 }
 
-/// Scrolls a panel that has a time axis, or else the list of events if it is visible.
+/// Scrolls a panel that has a time axis, the beliefs, or else the list of events if it is visible.
 pub(super) fn scroll(model: &mut ConsoleModel, session: &Session, panel: Option<Panel>, steps: i64) {
     if matches!(panel, Some(Panel::Timeline | Panel::Comparison)) {
         let back_s = i64::from(model.timeline_back_s) + steps * i64::from(STEP.0);
         let most_s = model.now.secs_since(session.trial_start).max(0.0) as i64;
         model.timeline_back_s = back_s.clamp(0, most_s) as u32;
+    } else if panel == Some(Panel::Belief) {
+        let told = beliefs(session, model).iter().filter(|belief| belief.standing != BeliefCorrectness::Right).count();
+        let from = model.beliefs_from as i64 - steps;
+        model.beliefs_from = from.clamp(0, told.saturating_sub(1) as i64) as usize;
     } else if matches!(model.alone, None | Some(Panel::Events | Panel::Presses)) {
         let back = model.events_back as i64 + steps * STEP.1 as i64;
         model.events_back = back.clamp(0, session.timeline.len().saturating_sub(1) as i64) as usize;

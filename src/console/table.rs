@@ -313,8 +313,8 @@ fn looks() -> [KeyBinding; 6] {
             Some("full size"),
         ),
         look("all_panels", Esc, ViewAction::All, "one step back; from the first view: quit", Some("back")),
-        look("back", Up, ViewAction::Back, "scroll events or timeline back", None),
-        look("forward", Down, ViewAction::Forward, "scroll events or timeline forward again", None),
+        look("back", Up, ViewAction::Back, "scroll the panel back", None),
+        look("forward", Down, ViewAction::Forward, "scroll the panel forward again", None),
     ]
 }
 

@@ -240,8 +240,8 @@ impl Review {
         }
         self.marked = read;
         // Where two marks meet, the later one of this list is seen.
-        let shown = [ReplayLandmark::Signal, ReplayLandmark::FalseBelief, ReplayLandmark::Error];
-        let shown = if self.model.coding.is_some() { &shown[2..] } else { &shown[..] };
+        let all = [ReplayLandmark::FalseBelief, ReplayLandmark::Error, ReplayLandmark::Signal];
+        let shown = if self.model.coding.is_some() { &[ReplayLandmark::Error][..] } else { &all[..] };
         let times = |&what: &ReplayLandmark| self.film.landmarks(what).into_iter().map(move |time| (time, what));
         let marks: Vec<(SessionTime, ReplayLandmark)> = shown.iter().flat_map(times).collect();
         self.playback(|playback| playback.marks = marks.into());

@@ -7,6 +7,7 @@
 
 use std::path::Path;
 
+use crate::console::beliefs;
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::follower::SessionFollower;
@@ -410,10 +411,9 @@ impl SeekableReplay {
                 let moments = self.beliefs.until(now);
                 let held = &moments.last()?.held;
                 let told = belief_track::newly_false(moments).map(|id| {
-                    let aspect = &session.kitchen.aspects[id.index()];
-                    let thinks = &aspect.wordings[usize::from(held[id.index()].wrong)];
-                    let truth = &aspect.wordings[session.kitchen.true_value(session.state, id)];
-                    format!("{}: thinks {thinks}, is {truth}", wording::location(&aspect.name))
+                    let (wrong, truth) = (held[id.index()].wrong, session.kitchen.true_value(session.state, id));
+                    let (thinks, truth) = beliefs::contrast(&session.kitchen, id, wrong.into(), truth);
+                    format!("{}: thinks {thinks}, {truth}", beliefs::name(session, id))
                 });
                 Some(told.collect::<Vec<_>>().join("; "))
             }

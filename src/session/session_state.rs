@@ -13,7 +13,7 @@ use crate::{GazeStatus, SessionSpec};
 use tomcom_core::base::rng::of_trial;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::offer::OfferHistory;
-use tomcom_core::communication::recommendation::Recommendation;
+use tomcom_core::communication::recommendation::{Recommendation, SignalReason};
 use tomcom_core::communication::{HighlightSet, Sender, Signal};
 use tomcom_core::kitchen::rules::NoEffectReason;
 use tomcom_core::kitchen::state::MAX_LOCATIONS;
@@ -100,6 +100,8 @@ pub struct ShownSignal {
     pub since: SessionTime,
     /// When it will disappear by itself.
     pub until: SessionTime,
+    /// Why the assistant sent it; of a wizard's signal nothing is known.
+    pub reason: Option<SignalReason>,
 }
 
 impl Session {

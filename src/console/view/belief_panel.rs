@@ -47,6 +47,8 @@ struct Panel<'a> {
     now: SessionTime,
     moments: &'a [BeliefSnapshot],
     beliefs: &'a [EstimatedBelief],
+    /// Number of false and unsure beliefs that are scrolled away.
+    from: usize,
 }
 
 pub fn draw(
@@ -61,7 +63,9 @@ pub fn draw(
         return;
     }
     let moments = model.belief.until(model.now);
-    let panel = Panel { session, now: model.now, moments, beliefs: believed };
+    let told = believed.iter().filter(|belief| belief.standing != BeliefCorrectness::Right).count();
+    let from = model.beliefs_from.min(told.saturating_sub(1));
+    let panel = Panel { session, now: model.now, moments, beliefs: believed, from };
     if area.height < FRAMED {
         return panel.lines(brush, area);
     }
@@ -86,6 +90,7 @@ impl Panel<'_> {
 
     fn remark(&self) -> String {
         match self.of_standing(BeliefCorrectness::False).count() {
+            _ if self.from > 0 => format!("{} above", self.from),
             0 => "estimated, not known".to_string(),
             number if are_by_cost(self.session) => format!("{number} false, costliest first"),
             number => format!("{number} false, oldest first"),
@@ -105,7 +110,7 @@ impl Panel<'_> {
         let told: Vec<&EstimatedBelief> =
             self.beliefs.iter().filter(|belief| belief.standing != BeliefCorrectness::Right).collect();
         let right = self.beliefs.len() - told.len();
-        for (index, belief) in told.iter().enumerate() {
+        for (index, belief) in told.iter().enumerate().skip(self.from) {
             // A wide panel gives a belief a line of its own, and further ones if its words need them.
             let is_row = is_wide && self.fits_row(belief, area.width);
             let lines = if is_row { Vec::new() } else { self.told(belief, area.width - 2) };
@@ -267,11 +272,12 @@ impl Panel<'_> {
             let words = if self.beliefs.is_empty() { BEFORE } else { QUIET };
             brush.text(x, area.y, room, words, quiet);
         }
-        for (row, belief) in told.iter().take(usize::from(area.height)).enumerate() {
+        for (row, belief) in told.iter().skip(self.from).take(usize::from(area.height)).enumerate() {
             let y = area.y + row as u16;
-            let more = told.len() - row - 1;
-            let more = if row as u16 + 1 == area.height && more > 0 { format!("+{more} ") } else { String::new() };
-            let end = format!("{more}{}", self.certainty(belief));
+            let more = told.len() - self.from - row - 1;
+            let more =
+                if row as u16 + 1 == area.height && more > 0 { format!("  +{more} more") } else { String::new() };
+            let end = format!("{}{more}", self.certainty(belief));
             let style = brush.style(role(belief));
             brush.text_right(x + room, y, room, &end, style);
             let columns = room.saturating_sub(width(&end) + 1);
@@ -280,11 +286,8 @@ impl Panel<'_> {
                 BeliefCorrectness::Unsure => self.title(belief),
                 _ => format!("{}: thinks {thinks}, {truth}", self.title(belief)),
             };
-            // What is believed and what is true have priority over the words between them.
-            let line = match width(&line) > columns && belief.standing != BeliefCorrectness::Unsure {
-                true => format!("{}: {thinks}, {truth}", self.title(belief)),
-                false => line,
-            };
+            // What an order needs is its recipe.
+            let line = if width(&line) > columns { line.trim_start_matches("recipe of ").to_string() } else { line };
             brush.text(x, y, columns, &fit(&line, columns, brush.theme.signs().ellipsis), style);
             brush.target(Rect { y, height: 1, ..area }, ClickAction::Belief(belief.aspect));
         }

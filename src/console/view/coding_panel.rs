@@ -124,7 +124,7 @@ fn draw_head(brush: &mut Painter, head: Rect, coding: &RaterSession, events: usi
     let mut lines: Vec<(String, TextRole)> = Vec::new();
     if let Some(next) = coding.next_step() {
         lines.extend(wrap(&next, columns).into_iter().map(|line| (line, TextRole::Strong)));
-    } else if let Some(error) = coding.present(events) {
+    } else if let Some(error) = coding.chosen.and_then(|chosen| coding.errors.get(chosen)).or(coding.present(events)) {
         let code = RaterSession::words(coding.code(error));
         let told = wrap(&format!("{} {}", error.error, reasoned(error)), columns);
         lines.extend(told.into_iter().map(|line| (line, TextRole::Strong)));

@@ -9,6 +9,7 @@ use super::regions::{PanelAreas, inside};
 use super::theme::TextRole;
 use crate::console::chord::KeyChord;
 use crate::console::console_model::{ConsoleModel, Dialog};
+use crate::console::form;
 use crate::console::key_action::{KeyAction, KeyBinding};
 use crate::console::lists::{self, ListCursor, Picker};
 use crate::console::mouse::ClickAction;
@@ -205,7 +206,7 @@ pub fn note(brush: &mut Painter, screen: Rect, session: &Session, text: &TextInp
 pub fn answer(brush: &mut Painter, screen: Rect, session: &Session, text: &TextInput) {
     let shown = session.protocol.as_ref().map_or(0, |protocol| protocol.item);
     let item = session.questionnaire().and_then(|asked| asked.items.get(shown));
-    let says = item.map_or("", |item| item.text.as_str());
+    let says = form::debriefing_question(session).or(item.map(|item| item.text.as_str())).unwrap_or_default();
     input_line(brush, screen, text, ("Answer", "no trial is running: space types a space"), says);
 }
 

@@ -94,7 +94,8 @@ fn row(brush: &mut Painter, line: Rect, session: &Session, model: &ConsoleModel,
     };
     let fits = width(&mark) + width(&whole) + 2 + width(&error.why) <= columns;
     let pressed: &str = if fits { &whole } else { &error.press };
-    let parts = [(mark.as_str(), TextRole::Strong), (pressed, TextRole::Text), (": ", TextRole::Quiet)];
+    let gap = if pressed.contains(':') { "; " } else { ": " };
+    let parts = [(mark.as_str(), TextRole::Strong), (pressed, TextRole::Text), (gap, TextRole::Quiet)];
     let end = brush.parts(x, line.y, columns, &parts);
     brush.parts(end, line.y, (x + columns).saturating_sub(end), &[(&error.why, TextRole::Strong)]);
 }

@@ -61,12 +61,15 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
     };
     let sign = brush.theme.signs().gaze;
     let age_s = session.age(at, model.now).as_secs_f64();
-    let place = match nearest_location(&session.kitchen, [sample.x, sample.y]) {
-        Some((location, 0.0)) => session.kitchen.location(location).label(),
-        Some((location, distance_m)) => {
-            format!("{:.0} cm from {}", distance_m * 100.0, session.kitchen.location(location).label())
+    let (kitchen, at_m) = (&session.kitchen, [sample.x, sample.y]);
+    let storage = kitchen.storages.iter().find(|storage| storage.display.distance_m(at_m, kitchen.display_m) == 0.0);
+    let place = match (nearest_location(kitchen, at_m), storage) {
+        (Some((location, 0.0)), _) => kitchen.location(location).label(),
+        (_, Some(storage)) => format!("storage of {}", storage.label),
+        (Some((location, distance_m)), None) => {
+            format!("{:.0} cm from {}", distance_m * 100.0, kitchen.location(location).label())
         }
-        None => "on the display".to_string(),
+        (None, None) => "on the display".to_string(),
     };
     let age = if age_s < NOW_S { "now".to_string() } else { format!("{age_s:.1} s ago") };
     brush.parts(

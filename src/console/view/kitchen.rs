@@ -85,7 +85,7 @@ fn frames(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &
     };
     let signs = brush.theme.signs();
     let there = match model.layer {
-        KeyLayer::Wizard => format!("{} there  {} missing", signs.served, signs.missing),
+        KeyLayer::Wizard => format!("{} there  {} in work  {} missing", signs.served, signs.in_work, signs.missing),
         KeyLayer::Participant => String::new(),
     };
     if regions.orders.area() > 0 {

@@ -66,6 +66,11 @@ fn draw(brush: &mut Painter, session: &Session, model: &ConsoleModel) {
     comparison_panel::draw(brush, &regions, session, model);
     coding_panel::draw(brush, &regions, session, model);
     timeline::draw_position(brush, &regions, session, model);
+    if regions.screen_size == regions::ScreenSize::Small && brush.focus.area() > 0 {
+        // There are no frames on small terminals.
+        let (focus, sign) = (brush.focus, brush.theme.signs().to);
+        brush.parts(focus.x, focus.y, 1, &[(sign, TextRole::Strong)]);
+    }
     footer::message(brush, &regions, session, model);
     cards::draw(brush, &regions, session, model);
     sheet::hide_probe(brush, regions.middle(), session, model);

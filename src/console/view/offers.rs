@@ -109,7 +109,7 @@ impl ShownOffer<'_> {
             return self.replaces(session).into_iter().collect();
         };
         let aspect = session.kitchen.aspect_named(&reason.aspect);
-        let belief = believed.iter().find(|belief| Some(belief.aspect) == aspect);
+        let belief = believed.iter().find(|belief| Some(belief.aspect) == aspect && belief.thinks != belief.truth);
         // Each belief has one value and one certainty on the screen, those of the belief panel.
         let ((believes, truth), p) = match belief {
             Some(belief) => {
@@ -154,7 +154,7 @@ pub fn draw_offer(
     }
     let Some(offer) = shown(session, model) else {
         let quiet = brush.style(TextRole::Quiet);
-        let words = closed(session, model).unwrap_or_else(|| why_no_offer(session, believed));
+        let words = closed(session, model).unwrap_or_else(|| why_no_offer(session, model, believed));
         brush.text(area.x + 1, area.y, area.width - 1, &words, quiet);
         return;
     };
@@ -189,17 +189,22 @@ fn closed(session: &Session, model: &ConsoleModel) -> Option<String> {
     if !may_see || session.age(last.closed, model.now) > TAKEN_AFTER || !session.is_running() {
         return None;
     }
-    let key =
-        model.keys.chord_for(&KeyAction::Accept).filter(|_| last.offer.used.is_none() && model.playback.is_none());
+    let is_taken = last.offer.used.is_some() || model.playback.is_some() || may_send(session, Sender::Wizard).is_err();
+    let key = model.keys.chord_for(&KeyAction::Accept).filter(|_| !is_taken);
     let still = key.map_or(String::new(), |key| format!("; {key} still sends it"));
     Some(format!("{}: {}{still}", wording::offered(&last.offer.advice.what), last.reason.words()))
 }
 
 /// What the line of the offer says while nothing is on offer. While the trial runs, its text changes only when a belief
 /// becomes false or true.
-fn why_no_offer(session: &Session, believed: &[EstimatedBelief]) -> String {
+fn why_no_offer(session: &Session, model: &ConsoleModel, believed: &[EstimatedBelief]) -> String {
     if session.spec.trial.condition == Condition::Assistant {
-        return "The assistant sends the signals, without the wizard".to_string();
+        let reason = session.shown.as_ref().and_then(|shown| shown.reason.as_ref());
+        let may_see = beliefs::visibility(session, model) == WizardVisibility::Recommendation;
+        return match reason.filter(|_| may_see).map(|reason| wording::reason(&session.kitchen, reason)) {
+            Some(reason) => format!("The assistant's signal: thought {}, is {}", reason.believes, reason.truth),
+            None => "The assistant sends the signals, without the wizard".to_string(),
+        };
     }
     if !session.spec.asks_assistant() {
         return "The assistant does not advise in this session (shadow = \"off\")".to_string();
@@ -211,6 +216,10 @@ fn why_no_offer(session: &Session, believed: &[EstimatedBelief]) -> String {
     }
     match believed.iter().filter(|belief| belief.standing == BeliefCorrectness::False).count() as u64 {
         0 => NOTHING_TO_SAY.to_string(),
+        number if session.spec.assistant.concept.unit() == BenefitUnit::Presses => {
+            let cheap = if number == 1 { "costs" } else { "cost" };
+            format!("{NOTHING_TO_SAY}: {} {cheap} less than a signal", count(number, "false belief", "false beliefs"))
+        }
         number => format!("{NOTHING_TO_SAY}; {}", count(number, "false belief", "false beliefs")),
     }
 }

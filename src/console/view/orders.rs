@@ -87,8 +87,7 @@ impl Place<'_> {
         [format!("thinks {thinks}, {truth}"), format!("thinks {thinks}")].into_iter().chain(short).collect()
     }
 
-    /// The items of an order, each with a sign: there (also if it is still in work, which is said where there is room)
-    /// or missing.
+    /// The items of an order, each with a sign: there, in work (where there is room, with what is there now) or missing.
     fn items(&self, brush: &Painter, needs: Option<&OrderNeeds>, is_long: bool) -> Parts {
         let signs = brush.theme.signs();
         let kitchen = &self.session.kitchen;
@@ -100,9 +99,12 @@ impl Place<'_> {
                 ItemProgress::Missing => (format!("{} {name}{gap}", signs.missing), shown),
                 ItemProgress::InWork(at) if is_long => {
                     let now = kitchen.content_label(self.session.state, at);
-                    (format!("{} {name} ({now}){gap}", signs.served), TextRole::Quiet)
+                    (format!("{} {name} ({now}){gap}", signs.in_work), TextRole::Text)
                 }
-                _ => (format!("{} {name}{gap}", signs.served), TextRole::Quiet),
+                ItemProgress::InWork(_) => (format!("{} {name}{gap}", signs.in_work), TextRole::Text),
+                ItemProgress::Stacked | ItemProgress::Ready(_) => {
+                    (format!("{} {name}{gap}", signs.served), TextRole::Quiet)
+                }
             }
         };
         needs.into_iter().flat_map(|needs| &needs.items).map(item).collect()

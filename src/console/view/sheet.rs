@@ -11,7 +11,7 @@ use super::theme::{TextRole, Theme};
 use crate::console::beliefs::visibility;
 use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
-use crate::console::form::{FormContent, WAIVERS, sheet};
+use crate::console::form::{FormContent, WAIVERS, debriefing_question, sheet};
 use crate::console::key_action::{KeyAction, ManualAction};
 use crate::console::lists::StartPrompt;
 use crate::console::preflight::{ParticipantDisplayHealth, is_wanted};
@@ -84,10 +84,14 @@ fn draw_steps(
         page.focus_here();
     }
     let on = if open.is_some() { "tick this step as done".to_string() } else { onward(session) };
-    let undo = ("bksp", "untick the last step", plain(KeyCode::Backspace));
-    let hints = [("enter", on.as_str(), plain(KeyCode::Enter)), undo];
-    let has_ticks = protocol.ticks.contains(&true);
-    page.draw(pen, screen, heads.0, heads.1, if has_ticks { &hints } else { &hints[..1] });
+    let mut hints = vec![("enter", on.as_str(), plain(KeyCode::Enter))];
+    if protocol.ticks.contains(&true) {
+        hints.push(("bksp", "untick the last step", plain(KeyCode::Backspace)));
+    }
+    if debriefing_question(session).is_some() {
+        hints.push(("a-z", "answer in words", None));
+    }
+    page.draw(pen, screen, heads.0, heads.1, &hints);
 }
 
 fn draw_tutorial(

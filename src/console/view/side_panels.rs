@@ -29,7 +29,8 @@ pub fn draw_robot(brush: &mut Painter, regions: &PanelAreas, session: &Session, 
         let (mut columns, mode) = (area.width.saturating_sub(11), session.robot.arm.mode);
         // Other modes than this one stand in the head line.
         if mode == SafetyMode::Reduced && !session.robot.stopped {
-            let name = format!(" {}", mode_words(mode));
+            // Where the robot goes has priority over why it is slow.
+            let name = if columns < 44 { " slow".to_string() } else { format!(" {}", mode_words(mode)) };
             columns = columns.saturating_sub(name.len() as u16);
             brush.parts(area.x + 10 + columns, area.y, name.len() as u16, &[(&name, mode_role(mode))]);
         }
@@ -136,12 +137,11 @@ fn robot_line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Sessi
     let whole_s = until.secs_since(since).max(1e-3);
     let left_s = until.secs_since(now);
     let label = format!("{} {}", brush.theme.signs().to, wording::button(&session.kitchen, Agent::Robot, button));
-    let by = if session.robot.driven_to.is_some() {
-        " by wizard"
-    } else if session.robot.initiative {
-        " alone: nobody presses"
-    } else {
-        ""
+    let by = match session.robot.initiative {
+        _ if session.robot.driven_to.is_some() => " by wizard",
+        true if width(&label) + 30 <= columns => " alone: nobody presses",
+        true => " alone",
+        false => "",
     };
     if session.robot.arm.mode == SafetyMode::Safeguard {
         // The time that is left is unknown until the hand is gone.

@@ -53,6 +53,8 @@ pub struct Glyphs {
     pub served: &'static str,
     /// Item of an order that is not there.
     pub missing: &'static str,
+    /// An item of an order that is there, but not processed yet.
+    pub in_work: &'static str,
     pub taken_back: &'static str,
     pub stopped: &'static str,
     pub touched: &'static str,
@@ -80,6 +82,7 @@ const UNICODE: Glyphs = Glyphs {
     error: "✗",
     served: "✓",
     missing: "□",
+    in_work: "◐",
     taken_back: "↶",
     stopped: "■",
     touched: "×",
@@ -106,6 +109,7 @@ const ASCII: Glyphs = Glyphs {
     error: "X",
     served: "v",
     missing: "_",
+    in_work: "~",
     taken_back: "<",
     stopped: "#",
     touched: "x",

@@ -57,9 +57,10 @@ pub fn why(kitchen: &Kitchen, press: &JudgedPress) -> String {
         ButtonAction::Trash => needed_by(kitchen, &orders, hand, held),
         ButtonAction::Use(_) | ButtonAction::Serve(_) => None,
     };
+    let excess = || count(press.verdict.excess.unsigned_abs(), "press", "presses");
     told.unwrap_or_else(|| match press.verdict.best {
-        Some(best) => format!("better: {}", wording::button(kitchen, Agent::Human, best)),
-        None => format!("costs {}", count(press.verdict.excess.unsigned_abs(), "press", "presses")),
+        Some(best) => format!("{} more than with {}", excess(), wording::button(kitchen, Agent::Human, best)),
+        None => format!("costs {}", excess()),
     })
 }
 
@@ -113,7 +114,9 @@ fn taken(kitchen: &Kitchen, orders: &[OrderNeeds], item: ContentId) -> Option<St
         .filter(|&to| serves(kitchen, item, to))
         .collect();
     let is_instead = |needed: &NeededItem| forms.iter().all(|&form| kitchen.stacked(needed.item, form).is_none());
-    Some(match all().find(|(_, needed)| is_missing(needed) && is_instead(needed)) {
+    // With several orders nobody knows which of them the press was for.
+    let instead = all().find(|(_, needed)| is_missing(needed) && is_instead(needed)).filter(|_| orders.len() == 1);
+    Some(match instead {
         Some((order, needed)) => format!("{} needs {}", label(kitchen, order), name(needed.item)),
         None => format!("no order needs {}", name(item)),
     })

@@ -40,7 +40,11 @@ pub fn idle(reason: IdleReason, waits_for: &[impl AsRef<str>], gave_up: Option<A
         IdleReason::HumanTurn => {
             let buttons = buttons.join(" or ");
             let told = format!("waits until the human presses {buttons}");
-            if told.chars().count() <= most { told } else { format!("human's turn: {buttons}") }
+            let short = format!("human's turn: {buttons}");
+            match [&told, &short].iter().find(|told| told.chars().count() <= most) {
+                Some(told) => told.to_string(),
+                None => format!("waits: {buttons}"),
+            }
         }
         IdleReason::Skipped => match gave_up {
             Some(AbortReason::Skipped) => "waits: the wizard skipped its press".to_string(),

@@ -165,7 +165,7 @@ fn while_nothing_is_offered_the_line_changes_only_with_the_beliefs() {
     let recipe = |order: &str| Signal::ShowRecipe(order.to_string());
     let sent = |order| Event::SignalShown { by: Sender::Wizard, signal: recipe(order), offer: None };
     let mut stage = advised(false);
-    let wrong = "nothing worth saying; 3 false beliefs";
+    let wrong = "nothing worth saying: 3 false beliefs cost less than a signal";
     check(&stage, wrong);
     stage.at(23.0, sent("order_2"));
     check(&stage, wrong);
@@ -173,7 +173,7 @@ fn while_nothing_is_offered_the_line_changes_only_with_the_beliefs() {
     check(&stage, wrong);
     let right = [("recipe of tuna nigiri", "tuna nigiri", 0.99), ("robot_hand", "tuna cut", 0.99)];
     stage.estimate(&right, false);
-    check(&stage, "nothing worth saying; 1 false belief");
+    check(&stage, "nothing worth saying: 1 false belief costs less than a signal");
     stage.estimate(&[("order_2", "crab maki", 0.99)], false);
     check(&stage, "nothing worth saying");
 }
@@ -187,7 +187,7 @@ fn a_closed_offer_fades_while_it_can_be_taken_and_is_told_in_the_timeline_then()
     stage.shows_everywhere(&["recipe of order 1: no longer worth it; enter still sends it"]);
     stage.hides((200, 60), &["missed"]);
     stage.wait(0.5);
-    stage.shows_everywhere(&["nothing worth saying; 3 false beliefs"]);
+    stage.shows_everywhere(&["nothing worth saying: 3 false beliefs"]);
     stage.wait(5.0);
     stage.shows((200, 60), &["─ missed"]);
 }

@@ -355,7 +355,7 @@ fn the_focus_goes_through_the_panels_and_opens_each_at_full_size() {
 #[test]
 fn orders_and_errors_are_explained_at_every_size() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    let needs = ["□ shaped rice", "□ nori", "✓ cut tuna", "✓ cooked rice", "✓ nori", "□ cut crab"];
+    let needs = ["□ shaped rice", "□ nori", "◐ cut tuna", "✓ cooked rice", "✓ nori", "□ cut crab"];
     let why = "✗ take salmon: order 1 needs tuna";
     let believed = ["thinks cut salmon", "thinks no order"];
     stage.shows_everywhere(&needs);

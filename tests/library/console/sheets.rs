@@ -101,6 +101,23 @@ fn the_keys_of_a_sheet_make_events_and_a_held_one_answers_once() {
 }
 
 #[test]
+fn a_question_of_the_debriefing_is_answered_in_words_as_a_note() {
+    let mut stage = planned(2, true);
+    stage.at(0.0, Event::TrialStarted);
+    stage.at(9.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
+    for (number, phase) in [(2, StudyPhase::Questionnaire), (3, StudyPhase::Debriefing)] {
+        stage.at(9.0, Event::Protocol(ProtocolEvent::PhaseStarted { phase, number }));
+    }
+    stage.shows_everywhere(&["a-z answer in words"]);
+    "no".chars().for_each(|letter| assert_eq!(stage.key(KeyCode::Char(letter)), None));
+    stage.shows_everywhere(&["Did you recognise the participant's mistakes in time?"]);
+    let note = "Did you recognise the participant's mistakes in time? Note what you missed. no".to_string();
+    let answered = stage.key(KeyCode::Enter);
+    assert_eq!(answered, Some(ConsoleCommand::Input(Event::Marker { note })));
+    assert!(stage.notice().contains("enter ticks the step"), "{}", stage.notice());
+}
+
+#[test]
 fn only_enter_confirms_answers_and_a_reason_to_go_on() {
     let mut stage = planned(2, true);
     stage.at(0.0, Event::TrialStarted);

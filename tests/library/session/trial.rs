@@ -224,6 +224,8 @@ fn an_error_is_explained_by_what_the_orders_need() {
         assert_eq!(error_reasons::why(&kitchen(), &press), why, "{presses:?}");
     };
     check(&["crab maki"], &[(Human, "take shrimp")], "order 1 needs crab");
+    // With two orders nobody knows for which of them it was.
+    check(&["tuna nigiri", "crab maki"], &[(Human, "take shrimp")], "no order needs shrimp");
     check(&["crab maki"], &[(Human, "cut")], "the cutting board is empty");
     let nori = [(Robot, "take nori"), (Robot, "assembly_board"), (Human, "take nori")];
     check(&["crab maki"], &nori, "order 1 has nori already");

@@ -266,7 +266,7 @@ fn lanes(pass: &mut ReplayPass) -> Vec<(String, Vec<CommunicationEvent>)> {
 
 fn contents(entry: &TimelineEntry) -> u64 {
     match &entry.what {
-        TimelineEvent::Signal { signal, .. } => signal.contents() as u64,
+        TimelineEvent::Noted(Event::SignalShown { signal, .. }) => signal.contents() as u64,
         _ => 0,
     }
 }
@@ -277,7 +277,7 @@ fn sent(session: &Session) -> Vec<CommunicationEvent> {
     for entry in &session.timeline {
         match &entry.what {
             TimelineEvent::Press { agent: Agent::Human, .. } => press += 1,
-            TimelineEvent::Signal { signal, .. } => {
+            TimelineEvent::Noted(Event::SignalShown { signal, .. }) => {
                 let content = CommunicationContent::from_signal(signal).content(&session.kitchen);
                 sent.push(CommunicationEvent { press, clock: clock_at(session, entry.time), content });
             }

@@ -51,7 +51,9 @@ fn simulated_participants_have_both_trials_of_the_plan() {
     let same = Path::new("seed1-P01-1").join(LOG_NAME);
     assert!(fs::read(alone.join(&same)).expect("a log") == fs::read(out.join(&same)).expect("a log"));
     let plan = json(&["plan", "sessions/study.toml", "--out", out_name]);
-    assert_eq!(plan["finished"], 0, "simulated trials fill no plan");
+    assert_eq!((&plan["finished"], &plan["simulated"]), (&json!(0), &json!(3)), "simulated trials fill no plan");
+    let told = said(&["plan", "sessions/study.toml", "--out", out_name]);
+    assert!(told.ends_with("not counted: 3 simulated recordings of the plan\n"), "{told}");
     refused(&["simulate", "sessions/study.toml", "--trials", "29", "--out", out_name], "--trials 29");
 }
 

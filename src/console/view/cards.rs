@@ -301,7 +301,7 @@ impl Card {
         }
     }
 
-    /// The keys in as many lines as they need in so many columns.
+    /// The keys, wrapped to this width in columns.
     fn key_lines(&self, columns: u16) -> Vec<&[(KeyChord, String)]> {
         let (mut lines, mut first, mut taken) = (Vec::new(), 0, 0);
         for (index, (chord, words)) in self.keys.iter().enumerate() {

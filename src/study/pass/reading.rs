@@ -19,7 +19,8 @@ use crate::robot_tally::{RobotEventSummary, RobotEventTally};
 use crate::standing::exclusion_status;
 use crate::tables::participants::{TutorialAnswerCollector, TutorialQuestionRow};
 use crate::trial_statistics::{
-    DisplayLosses, FalseBeliefErrors, QuestionnaireAnswer, SignalSenderWithParameter, TrialDetails, TrialStatistics,
+    AskedItem, DisplayLosses, FalseBeliefErrors, QuestionnaireAnswer, SignalSenderWithParameter, TrialDetails,
+    TrialStatistics,
 };
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::ConceptName;
@@ -400,12 +401,14 @@ fn confirmed_answers(session: &Session) -> Vec<QuestionnaireAnswer> {
     let answered = |(index, item): (usize, &QuestionnaireItem)| {
         let form = questionnaire.form(index);
         QuestionnaireAnswer {
-            questionnaire: questionnaire.name.clone(),
-            item: item.id.clone(),
-            text: item.text.clone(),
-            about: item.about.clone(),
-            reversed: item.reversed,
-            kind: item.kind.unwrap_or(QuestionnaireItemKind::Scale),
+            asked: AskedItem {
+                questionnaire: questionnaire.name.clone(),
+                item: item.id.clone(),
+                text: item.text.clone(),
+                about: item.about.clone(),
+                reversed: item.reversed,
+                kind: item.kind.unwrap_or(QuestionnaireItemKind::Scale),
+            },
             answer: protocol.given(index).cloned(),
             points: match form {
                 Some(AnswerFormat::Scale(scale)) => Some(scale.points),

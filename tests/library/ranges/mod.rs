@@ -249,7 +249,8 @@ fn every_number_of_every_settings_file_has_a_range() {
 /// The table around a setting, and its name there: "participant.population" and "slip.median".
 fn in_table(path: &str) -> (&str, &str) {
     let table = path.strip_suffix(".median").unwrap_or(path).strip_suffix(".*.sigma").unwrap_or(path);
-    let end = if table.len() < path.len() && path.ends_with(".sigma") { table.len() } else { table.rfind('.').unwrap_or(0) };
+    let end =
+        if table.len() < path.len() && path.ends_with(".sigma") { table.len() } else { table.rfind('.').unwrap_or(0) };
     (&path[..end], path[end..].trim_start_matches('.'))
 }
 
@@ -271,11 +272,14 @@ fn the_documentation_has_every_range() {
         };
         let all: Vec<usize> = (0..ranges.len()).collect();
         // Settings that follow one another in one table and have one range share a row.
-        for row in all.chunk_by(|&one, &next| around[one] == around[next] && told(&ranges[one]) == told(&ranges[next])) {
+        for row in all.chunk_by(|&one, &next| around[one] == around[next] && told(&ranges[one]) == told(&ranges[next]))
+        {
             let names: Vec<String> = row.iter().map(|&at| format!("`{}`", own[at])).collect();
-            let around = around[row[0]];
-            let around = if around.is_empty() { String::new() } else { format!("`{around}`") };
-            table += &format!("| {around} | {} | {} |\n", names.join(" "), told(&ranges[row[0]]));
+            // The table's name stands in the first of its rows.
+            let is_first = row[0] == 0 || around[row[0] - 1] != around[row[0]];
+            let around = Some(around[row[0]]).filter(|around| is_first && !around.is_empty());
+            let around = around.map_or(String::new(), |around| format!(" `{around}`"));
+            table += &format!("|{around} | {} | {} |\n", names.join(" "), told(&ranges[row[0]]));
         }
         let section = page.split("\n## ").find(|section| section.starts_with(title)).unwrap_or_default();
         if !section.contains(&table) {

@@ -248,9 +248,8 @@ fn every_number_of_every_settings_file_has_a_range() {
 
 /// The table around a setting, and its name there: "participant.population" and "slip.median".
 fn in_table(path: &str) -> (&str, &str) {
-    let table = path.strip_suffix(".median").unwrap_or(path).strip_suffix(".*.sigma").unwrap_or(path);
-    let end =
-        if table.len() < path.len() && path.ends_with(".sigma") { table.len() } else { table.rfind('.').unwrap_or(0) };
+    let spread = path.strip_suffix(".median").or(path.strip_suffix(".sigma")).unwrap_or(path);
+    let end = spread.rfind('.').unwrap_or(0);
     (&path[..end], path[end..].trim_start_matches('.'))
 }
 

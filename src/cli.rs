@@ -46,10 +46,10 @@ use crate::run::options;
 use crate::run::plan::{self, StudyProgress};
 use crate::run::review_console as console_over;
 use tomcom_core::base::text::printable;
+use tomcom_session::history::event_words;
 use tomcom_session::log::{self, LogEnding};
 use tomcom_session::replay::RecordingReplay;
 use tomcom_session::verify;
-use tomcom_study::analysis::event_lines;
 use tomcom_study::analysis::kitchen_summary::{self, KitchenSummary};
 use tomcom_study::analysis::recording_summary::RecordingSummary;
 use tomcom_study::standing;
@@ -148,12 +148,12 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
     let mut replay = RecordingReplay::open(recording)?;
     let mut events = 0;
     if args.format == OutputFormat::Text {
-        put(&format!("{}\n", event_lines::HEADING))?;
+        put(&format!("{}\n", event_words::HEADING))?;
     }
     loop {
         while let Some(event) = replay.step()? {
             events += 1;
-            if let (OutputFormat::Text, Some(line)) = (args.format, event_lines::line(&event.stamped, &replay.follower))
+            if let (OutputFormat::Text, Some(line)) = (args.format, event_words::line(&event.stamped, &replay.follower))
             {
                 put(&format!("{line}\n"))?;
             }

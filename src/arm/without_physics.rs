@@ -7,10 +7,12 @@ use tomcom_core::robot::{AbortReason, RobotEvent};
 
 use crate::worker::ArmCycleReport;
 
-#[derive(Clone, Debug)]
-pub enum SimulatedArm {}
+pub use NoSimulatedArm as SimulatedArm;
 
-impl SimulatedArm {
+#[derive(Clone, Debug)]
+pub enum NoSimulatedArm {}
+
+impl NoSimulatedArm {
     pub fn next_due(&self, _: bool) -> Option<SessionTime> {
         match *self {}
     }

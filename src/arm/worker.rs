@@ -163,7 +163,7 @@ impl RobotTaskExecutor {
         }
     }
 
-    /// Whether the human has not pressed for so long that the robot takes the initiative.
+    /// Whether the robot takes the initiative, since the human has not pressed for `initiative_s`.
     fn is_passive(&self, now: SessionTime) -> bool {
         now >= self.passive_from
     }

@@ -59,7 +59,7 @@ impl From<ParticipantDeletionError> for Failure {
 impl From<RecordingError> for Failure {
     fn from(error: RecordingError) -> Failure {
         match error {
-            RecordingError::File(error) => Failure::from(*error),
+            RecordingError::File(error) => Failure::from(error),
             RecordingError::Recording(error) => Failure::from(error),
         }
     }
@@ -69,7 +69,7 @@ impl From<LiveError> for Failure {
     fn from(error: LiveError) -> Failure {
         match error {
             LiveError::Resume(error) => Failure::Wrong(miette::Report::new(error)),
-            LiveError::File(error) => Failure::from(*error),
+            LiveError::File(error) => Failure::from(error),
             error @ LiveError::Plan(_) => Failure::Wrong(miette::Report::new(error)),
             error => Failure::Failed(miette::Report::new(error)),
         }
@@ -79,7 +79,7 @@ impl From<LiveError> for Failure {
 impl From<ReviewError> for Failure {
     fn from(error: ReviewError) -> Failure {
         match error {
-            ReviewError::File(error) => Failure::from(*error),
+            ReviewError::File(error) => Failure::from(error),
             error => Failure::Failed(miette::Report::new(error)),
         }
     }

@@ -15,7 +15,7 @@ use tomcom_devices::scene::moment_on_clock;
 impl From<RerunViewerError> for Failure {
     fn from(error: RerunViewerError) -> Failure {
         match error {
-            RerunViewerError::File(error) => Failure::from(*error),
+            RerunViewerError::File(error) => Failure::from(error),
             error => Failure::Failed(miette::Report::new(error)),
         }
     }

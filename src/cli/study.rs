@@ -66,7 +66,7 @@ enum Skip {
 impl From<StudyError> for Failure {
     fn from(error: StudyError) -> Failure {
         match error {
-            StudyError::File(error) => Failure::from(*error),
+            StudyError::File(error) => Failure::from(error),
             StudyError::Export(error) => Failure::Failed(miette::Report::new(error)),
         }
     }

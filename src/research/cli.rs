@@ -314,7 +314,7 @@ impl From<FileError> for Failure {
 impl From<RecordingError> for Failure {
     fn from(error: RecordingError) -> Failure {
         match error {
-            RecordingError::File(error) => Failure::from(*error),
+            RecordingError::File(error) => Failure::from(error),
             RecordingError::Recording(error) => Failure::Failed(Report::new(error)),
         }
     }

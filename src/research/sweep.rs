@@ -274,9 +274,8 @@ fn table_name(shard: SimulationShard) -> String {
 
 /// All combinations of the swept settings' values; the values of the last setting vary fastest.
 fn grid(axes: &[ParameterSweepAxis]) -> Result<Vec<Cell>, RecordingError> {
-    let wrong = |found: String, remedy: String| {
-        Err(Box::new(FileError::from_finding(Path::new("--sweep"), found, remedy)).into())
-    };
+    let wrong =
+        |found: String, remedy: String| Err(FileError::from_finding(Path::new("--sweep"), found, remedy).into());
     let twice = axes.iter().enumerate().find(|(index, axis)| axes[..*index].iter().any(|one| one.name == axis.name));
     if let Some((_, axis)) = twice {
         return wrong(format!("{} twice", axis.name), "each setting once, with all of its values".to_string());
@@ -313,7 +312,7 @@ fn check_axes(spec: &SessionSpec, axes: &[ParameterSweepAxis]) -> Result<(), Rec
         let by = decides.map_or("the wizard", ConceptName::name);
         let found = format!("{}, a setting that only {} uses, where {by} decides", axis.name, concept.name());
         let remedy = format!("--condition assistant --concept {}, or another setting", concept.name());
-        return Err(Box::new(FileError::from_finding(Path::new("--sweep"), found, remedy)).into());
+        return Err(FileError::from_finding(Path::new("--sweep"), found, remedy).into());
     }
     Ok(())
 }
@@ -327,7 +326,7 @@ fn spec_of(spec: &SessionSpec, axes: &[ParameterSweepAxis], cell: &Cell) -> Resu
         Ok(()) => Ok(spec),
         Err(error) => {
             let path = Path::new("--sweep");
-            Err(Box::new(FileError::from_finding(path, error.found, error.remedy.to_string())).into())
+            Err(FileError::from_finding(path, error.found, error.remedy.to_string()).into())
         }
     }
 }

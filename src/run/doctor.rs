@@ -60,7 +60,7 @@ pub fn examine(spec: &SessionSpec, kitchen: &Kitchen, out: &Path) -> DoctorRepor
     DoctorReport { healthy, checks }
 }
 
-/// The findings as text, in lines of at most so many columns.
+/// The findings as text, wrapped to this width in columns.
 pub fn describe(findings: &DoctorReport, columns: u16) -> String {
     let indented = |first: &str, text: &str| {
         let lines = wrap(text, columns.saturating_sub(INDENT).max(INDENT));

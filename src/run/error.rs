@@ -30,7 +30,7 @@ pub enum LiveError {
     /// A file cannot be read.
     #[error(transparent)]
     #[diagnostic(transparent)]
-    File(#[from] Box<FileError>),
+    File(#[from] FileError),
     /// The port for gaze samples cannot be opened.
     #[error("the port for gaze samples at {at} cannot be opened: {reason}")]
     #[diagnostic(help("set another gaze_port in the session file, or an address of this computer as gaze_listen"))]
@@ -88,12 +88,6 @@ pub enum LiveError {
     },
 }
 
-impl From<FileError> for LiveError {
-    fn from(error: FileError) -> LiveError {
-        LiveError::File(Box::new(error))
-    }
-}
-
 /// Error while a recording is shown at the console.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum ReviewError {
@@ -104,7 +98,7 @@ pub enum ReviewError {
     /// A file cannot be read.
     #[error(transparent)]
     #[diagnostic(transparent)]
-    File(#[from] Box<FileError>),
+    File(#[from] FileError),
     /// The consensus of two raters cannot be written.
     #[error(transparent)]
     #[diagnostic(transparent)]
@@ -122,10 +116,4 @@ pub enum ReviewError {
     #[error("the header of the recording: {0}")]
     #[diagnostic(help("{}", .0.remedy))]
     Keys(#[from] KeyError),
-}
-
-impl From<FileError> for ReviewError {
-    fn from(error: FileError) -> ReviewError {
-        ReviewError::File(Box::new(error))
-    }
 }

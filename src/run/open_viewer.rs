@@ -38,7 +38,7 @@ const NAMED: usize = 50;
 pub enum RerunViewerError {
     #[error(transparent)]
     #[diagnostic(transparent)]
-    File(#[from] Box<FileError>),
+    File(#[from] FileError),
     /// The stream file cannot be written.
     #[error("{}: the Rerun stream cannot be written: {reason}", path.display())]
     #[diagnostic(help("give a file that can be written to with --save=FILE"))]
@@ -65,12 +65,6 @@ pub enum RerunViewerError {
         /// Why the operating system could not start the viewer's program.
         reason: io::Error,
     },
-}
-
-impl From<FileError> for RerunViewerError {
-    fn from(error: FileError) -> RerunViewerError {
-        RerunViewerError::File(Box::new(error))
-    }
 }
 
 /// Request of `tomcom review`: which recordings to show in Rerun, and how.

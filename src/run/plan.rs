@@ -28,6 +28,8 @@ pub struct StudyProgress {
     pub planned: usize,
     /// Number of participants who have completed all their recordings.
     pub finished: usize,
+    /// Number of simulated recordings of the plan, which fill none of it.
+    pub simulated: u64,
     /// Progress of each participant.
     pub participants: Vec<ParticipantProgress>,
 }
@@ -38,7 +40,7 @@ impl StudyProgress {
     /// # Errors
     /// A recording cannot be read or does not belong to the plan.
     pub fn from_study(study: &Study, out: &Path) -> Result<StudyProgress, LiveError> {
-        let made = recordings_of(study, out)?;
+        let (made, simulated) = recordings_of(study, out)?;
         let codes = study.plan.codes();
         let progress =
             |participant| ParticipantProgress::from_recordings(study, participant, &made).map_err(LiveError::Plan);
@@ -49,6 +51,7 @@ impl StudyProgress {
             seed: study.session.seed,
             planned: participants.len(),
             finished: participants.iter().filter(|one| one.done() == one.steps.len()).count(),
+            simulated,
             participants,
         })
     }
@@ -126,7 +129,11 @@ pub fn describe(figures: &StudyProgress) -> String {
         let line = format!("{:width$}  {}  {}  {stands}\n", progress.code, progress.group, order.join(", "));
         line + &attempts(progress)
     };
-    head + &figures.participants.iter().map(one).collect::<String>()
+    let simulated = match figures.simulated {
+        0 => String::new(),
+        all => format!("not counted: {} of the plan\n", count(all, "simulated recording", "simulated recordings")),
+    };
+    head + &figures.participants.iter().map(one).collect::<String>() + &simulated
 }
 
 /// Remarks on a participant's recordings: invalid recordings, and recordings made with another version of the plan.

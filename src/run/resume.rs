@@ -23,7 +23,7 @@ use tomcom_session::{Event, LogHeader, SessionSpec, TimestampedEvent};
 pub enum ResumeError {
     #[error(transparent)]
     #[diagnostic(transparent)]
-    File(#[from] Box<FileError>),
+    File(#[from] FileError),
     #[error(transparent)]
     #[diagnostic(transparent)]
     Recording(#[from] RecordingWriteError),
@@ -50,12 +50,6 @@ pub enum ResumeError {
         /// Sequence number of the event that differs.
         seq: u64,
     },
-}
-
-impl From<FileError> for ResumeError {
-    fn from(error: FileError) -> ResumeError {
-        ResumeError::File(Box::new(error))
-    }
 }
 
 /// A session that continues a recording after its cut.

@@ -30,23 +30,6 @@ const MOST_SNAPSHOTS: usize = 256;
 /// Event without effect that replaces hidden events in a replay for raters, so that sequence numbers stay.
 const HIDDEN: Event = Event::ClockJumped { by_ms: 0 };
 
-/// Whether an event is hidden from raters: it reveals the trial's condition (a signal, an offer, a recommendation), or
-/// what the wizard thought.
-fn is_hidden(event: &Event) -> bool {
-    matches!(
-        event,
-        Event::SignalShown { .. }
-            | Event::SignalDrawn { .. }
-            | Event::SignalEnded { .. }
-            | Event::OfferOpened(_)
-            | Event::OfferClosed { .. }
-            | Event::Advised(_)
-            | Event::Unblinded { .. }
-            | Event::Marker { .. }
-            | Event::MarkerWorded { .. }
-    )
-}
-
 /// Whether the replay stops at this event when it is moved step by step.
 fn is_step(event: &Event) -> bool {
     !event.is_sample() && *event != HIDDEN
@@ -335,7 +318,8 @@ impl SeekableReplay {
         if !is_loaded {
             match chunk.place.read_again(chunk.number) {
                 Ok(mut events) => {
-                    let hidden = events.iter_mut().filter(|stamped| self.is_blinded && is_hidden(&stamped.event));
+                    let hidden =
+                        events.iter_mut().filter(|stamped| self.is_blinded && stamped.event.is_hidden_from_raters());
                     hidden.for_each(|stamped| stamped.event = HIDDEN);
                     self.loaded = Some((of, events));
                 }
@@ -398,13 +382,13 @@ impl SeekableReplay {
                 Some(format!("{}: {}", error.press, error.why))
             }
             ReplayLandmark::Signal => entries().find_map(|entry| match entry {
-                TimelineEvent::Signal { by, signal } => {
+                TimelineEvent::Noted(Event::SignalShown { by, signal, .. }) => {
                     Some(format!("{}, by the {}", wording::signal(signal), wording::sender(*by)))
                 }
                 _ => None,
             }),
             ReplayLandmark::Marker => entries().find_map(|entry| match entry {
-                TimelineEvent::Marker(note) => Some(note.clone()),
+                TimelineEvent::Noted(Event::Marker { note }) => Some(note.clone()),
                 _ => None,
             }),
             ReplayLandmark::FalseBelief => {
@@ -439,7 +423,7 @@ impl Step {
             time: stamped.time,
             landmark,
             starts_trial: stamped.event == Event::TrialStarted,
-            is_shown_to_raters: !is_hidden(&stamped.event),
+            is_shown_to_raters: !stamped.event.is_hidden_from_raters(),
         })
     }
 }

@@ -67,10 +67,10 @@ pub fn operate_series(series: SeriesRequest) -> Result<SeriesOutcome, LiveError>
 /// for a new session.
 fn continued_lock(beginning: &SessionStart) -> Result<Option<RecordingLock>, LiveError> {
     let SessionStart::Continued(recording) = beginning else { return Ok(None) };
-    let log = LogReader::open(recording).map_err(Box::new)?;
+    let log = LogReader::open(recording)?;
     let Some(step) = &log.header.session.step else { return Ok(None) };
     let place = log.path_of_last_part().canonicalize();
-    let place = place.map_err(|reason| Box::new(FileError::unreadable(recording, reason, "a readable recording")))?;
+    let place = place.map_err(|reason| FileError::unreadable(recording, reason, "a readable recording"))?;
     let beside = place.parent().and_then(Path::parent).unwrap_or(Path::new("."));
     Ok(Some(RecordingLock::take_for_participant(beside, &step.plan, &log.header.session.participant.code)?))
 }
@@ -110,7 +110,7 @@ impl Planned {
 
     /// Progress of the participant; number of participants who have done everything, and of all.
     fn progress(&self) -> Result<(ParticipantProgress, (usize, usize)), LiveError> {
-        let made = recordings_of(&self.study, &self.series.out)?;
+        let (made, _) = recordings_of(&self.study, &self.series.out)?;
         let progress = |participant| ParticipantProgress::from_recordings(&self.study, participant, &made);
         let all = self.study.plan.codes().len();
         // Recordings of others that do not fit the plan do not stop this participant.
@@ -284,14 +284,16 @@ pub(super) fn stands(progress: &ParticipantProgress) -> String {
     }
 }
 
-/// The recordings of a study in the folder `out`.
+/// The recordings of a study in the folder `out`, and the number of simulated ones.
 ///
 /// # Errors
 /// A recording cannot be read, or is of a participant who is not in the plan.
-pub fn recordings_of(study: &Study, out: &Path) -> Result<Vec<PlanRecording>, LiveError> {
-    let made = recordings::of_plan(out, &study.plan.name)?;
+pub fn recordings_of(study: &Study, out: &Path) -> Result<(Vec<PlanRecording>, u64), LiveError> {
+    let (made, simulated) = recordings::of_plan(out, &study.plan.name)?;
     let codes = study.plan.codes();
-    let Some(stranger) = made.iter().find(|made| !codes.contains(&made.code)) else { return Ok(made) };
+    let Some(stranger) = made.iter().find(|made| !codes.contains(&made.code)) else {
+        return Ok((made, simulated));
+    };
     let PlanRecording { recording, code, recorded_as, .. } = stranger;
     let found = format!("the recording {recording} of {code}, a participant who is not in the plan");
     Err(match recorded_as {

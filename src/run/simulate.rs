@@ -39,7 +39,7 @@ pub fn simulate(simulation: &SimulationRequest, done: impl Fn() + Sync) -> Resul
         recordings.push(trial.folder.clone().into());
         found += u64::from(trial.found);
         // An existing recording can have been excluded from the analysis.
-        match ruling(&trial.folder).map_err(Box::new)?.is_some_and(|ruling| ruling.excluded) {
+        match ruling(&trial.folder)?.is_some_and(|ruling| ruling.excluded) {
             true => excluded += 1,
             false => sums.add(trial.arm, &trial.figures, &plan_lengths),
         }
@@ -54,14 +54,15 @@ pub fn simulate(simulation: &SimulationRequest, done: impl Fn() + Sync) -> Resul
 /// # Errors
 /// The errors of [`simulate`].
 pub fn for_training(seed: u64, seconds: f64, out: &Path) -> Result<Vec<PathBuf>, RecordingError> {
-    let mut files = options::session_or_default(None).map_err(Box::new)?;
+    let mut files = options::session_or_default(None)?;
     (files.spec.plan, files.spec.seed) = (None, seed);
     (files.spec.trial.condition, files.spec.assistant.shadow) = (Condition::None, ShadowMode::Off);
     (files.spec.trial.seconds, files.spec.trial.orders) = (seconds, None);
     files.spec.participant = ParticipantSpec::default();
-    files.spec.check().map_err(|error| {
-        Box::new(FileError::from_finding(Path::new("--seconds"), error.found, error.remedy.to_string()))
-    })?;
+    files
+        .spec
+        .check()
+        .map_err(|error| FileError::from_finding(Path::new("--seconds"), error.found, error.remedy.to_string()))?;
     // The recording's length is part of the path, since recordings of different length would have the same name.
     let out = out.join(format!("{seconds}s"));
     let figures = simulate(&SimulationRequest { files, trials: 1, shard: SimulationShard::WHOLE, out }, || ())?;

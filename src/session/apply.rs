@@ -52,14 +52,13 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
         }
         Event::TrialExcluded { reason } => {
             session.excluded = Some(reason.clone());
-            session.note(now, TimelineEvent::Excluded(reason.clone()));
+            session.note_event(now, &stamped.event);
         }
         Event::TrialIncluded => {
             session.excluded = None;
-            session.note(now, TimelineEvent::Included);
+            session.note_event(now, &stamped.event);
         }
-        Event::FocusLost => session.note(now, TimelineEvent::Focus(false)),
-        Event::FocusRegained => session.note(now, TimelineEvent::Focus(true)),
+        Event::FocusLost | Event::FocusRegained => session.note_event(now, &stamped.event),
         Event::Gaze(sample) => take_sample(session, now, *sample),
         Event::Tracker(event) => session.tracker.apply(now, event),
         Event::Calibration(event) => gaze_check::apply(session, now, event),
@@ -92,10 +91,16 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
         Event::RobotMoves(_) | Event::RobotSafety { .. } | Event::RobotTouched { .. } => {
             change_arm(session, now, &stamped.event);
         }
-        Event::RobotStopped => stop_robot(session, now, true),
-        Event::RobotResumed => stop_robot(session, now, false),
-        Event::RobotHeld { .. } => hold_robot(session, now, true),
-        Event::RobotReleased { .. } => hold_robot(session, now, false),
+        Event::RobotStopped | Event::RobotResumed => {
+            session.robot.stopped = stamped.event == Event::RobotStopped;
+            session.robot.idle = None;
+            session.note_event(now, &stamped.event);
+        }
+        Event::RobotHeld { .. } | Event::RobotReleased { .. } => {
+            session.robot.held = matches!(stamped.event, Event::RobotHeld { .. });
+            session.robot.idle = None;
+            session.note_event(now, &stamped.event);
+        }
         Event::RobotSkipped { .. } => {
             if let Some((button, ..)) = session.robot.intention {
                 session.note(now, TimelineEvent::RobotSkipped(button));
@@ -104,13 +109,13 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
         Event::RobotDriven { button, .. } => {
             let button = named.button(Agent::Robot, button)?;
             session.robot.driven_to = Some(button);
-            session.note(now, TimelineEvent::RobotDriven(button));
+            session.note_event(now, &stamped.event);
         }
         Event::KitchenCorrected { location, content } => {
             let (location, content) = (named.location(location)?, named.content(content)?);
             let (before, after) = update(session, now, |state| state.set_content(location, content));
             change = KitchenChange::Correction { location, before, after };
-            session.note(now, TimelineEvent::Corrected { location });
+            session.note_event(now, &stamped.event);
         }
         Event::Advised(advice) => advise(session, advice.clone()),
         Event::OfferOpened(advice) => {
@@ -129,10 +134,16 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
                 offers::sends(session, now, signal, offer.is_some());
             }
             show(session, now, *by, (signal, location), &mut effects);
+            session.note_event(now, &stamped.event);
         }
-        Event::SignalEnded { reason } => end_signal(session, now, *reason, &mut effects),
+        Event::SignalEnded { reason } => {
+            end_signal(session, *reason, &mut effects);
+            if *reason == SignalEndReason::TakenBack {
+                session.note_event(now, &stamped.event);
+            }
+        }
         Event::Marker { note: text } => {
-            session.note(now, TimelineEvent::Marker(text.clone()));
+            session.note_event(now, &stamped.event);
             if text.is_empty() {
                 session.open_marks.push((stamped.seq, now));
             }
@@ -248,9 +259,10 @@ fn start(session: &mut Session, now: SessionTime, effects: &mut Vec<SessionEffec
 fn word_mark(session: &mut Session, marker: u64, note: &str) {
     let Some(index) = session.open_marks.iter().position(|(mark, _)| *mark == marker) else { return };
     let (_, at) = session.open_marks.remove(index);
-    let is_it = |entry: &&mut TimelineEntry| entry.time == at && entry.what == TimelineEvent::Marker(String::new());
+    let mark = |note: &str| TimelineEvent::Noted(Event::Marker { note: note.to_string() });
+    let is_it = |entry: &&mut TimelineEntry| entry.time == at && entry.what == mark("");
     if let Some(entry) = session.timeline.iter_mut().find(is_it) {
-        entry.what = TimelineEvent::Marker(note.to_string());
+        entry.what = mark(note);
     }
 }
 
@@ -322,7 +334,6 @@ fn show(
     }
     effects.push(SessionEffect::Cancel(Timer::EndSignal));
     effects.push(SessionEffect::At { time: until, timer: Timer::EndSignal });
-    session.note(now, TimelineEvent::Signal { by, signal: signal.clone() });
 }
 
 /// Stores a recommendation, without a signal that was sent since it was requested.
@@ -334,13 +345,10 @@ fn advise(session: &mut Session, mut advice: Recommendation) {
     session.advice = Some(advice);
 }
 
-fn end_signal(session: &mut Session, now: SessionTime, reason: SignalEndReason, effects: &mut Vec<SessionEffect>) {
+fn end_signal(session: &mut Session, reason: SignalEndReason, effects: &mut Vec<SessionEffect>) {
     session.shown = None;
     if reason != SignalEndReason::Elapsed {
         effects.push(SessionEffect::Cancel(Timer::EndSignal));
-    }
-    if reason == SignalEndReason::TakenBack {
-        session.note(now, TimelineEvent::SignalEnded(reason));
     }
 }
 
@@ -453,31 +461,19 @@ pub(crate) fn resume_clock(session: &mut Session, now: SessionTime) -> SessionTi
 fn change_arm(session: &mut Session, now: SessionTime, event: &Event) {
     match event {
         Event::RobotMoves(moment) => session.robot.arm.last = Some((now, *moment)),
-        Event::RobotTouched { force_n } => session.note(now, TimelineEvent::ArmTouched { force_n: *force_n }),
-        Event::RobotSafety { mode, force_n, joint } => {
+        Event::RobotTouched { .. } => session.note_event(now, event),
+        Event::RobotSafety { mode, force_n, .. } => {
             let arm = &mut session.robot.arm;
             (arm.mode, arm.stopped_by_n) = (*mode, *force_n);
             // A stop by the wizard has an event of its own, so only other stops are noted here.
             if mode.is_stopped() && !session.robot.stopped {
                 session.robot.stopped = true;
                 session.robot.idle = None;
-                session.note(now, TimelineEvent::ArmStopped { mode: *mode, force_n: *force_n, joint: *joint });
+                session.note_event(now, event);
             }
         }
         _ => {}
     }
-}
-
-pub(crate) fn stop_robot(session: &mut Session, now: SessionTime, stopped: bool) {
-    session.robot.stopped = stopped;
-    session.robot.idle = None;
-    session.note(now, if stopped { TimelineEvent::RobotStopped } else { TimelineEvent::RobotResumed });
-}
-
-pub(crate) fn hold_robot(session: &mut Session, now: SessionTime, held: bool) {
-    session.robot.held = held;
-    session.robot.idle = None;
-    session.note(now, if held { TimelineEvent::RobotHeld } else { TimelineEvent::RobotReleased });
 }
 
 const SILENT_INTERVALS: u64 = 3;

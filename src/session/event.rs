@@ -11,6 +11,7 @@ use crate::probes::ProbeEvent;
 use crate::protocol::ProtocolEvent;
 use crate::settings::WizardVisibility;
 use crate::tracker::TrackerEvent;
+use crate::tutorial::TutorialEvent;
 use crate::wall_display::DisplayEvent;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::ConceptName;
@@ -211,6 +212,44 @@ impl Event {
         matches!(self, Event::Gaze(_) | Event::RobotMoves(_))
     }
 
+    /// Whether an event is hidden from raters: it reveals the trial's condition (a signal, an offer, a recommendation), or
+    /// what the wizard thought.
+    pub fn is_hidden_from_raters(&self) -> bool {
+        matches!(
+            self,
+            Event::SignalShown { .. }
+                | Event::SignalDrawn { .. }
+                | Event::SignalEnded { .. }
+                | Event::OfferOpened(_)
+                | Event::OfferClosed { .. }
+                | Event::Advised(_)
+                | Event::Unblinded { .. }
+                | Event::Marker { .. }
+                | Event::MarkerWorded { .. }
+        )
+    }
+
+    /// Fields of an event that can identify a person, a computer or its folders; streams in a network leave them out, since everybody
+    /// there can read them.
+    pub fn private_fields(&self) -> &'static [&'static str] {
+        match self {
+            Event::Marker { .. } | Event::MarkerWorded { .. } => &["note"],
+            Event::TrialAborted { .. } | Event::TrialExcluded { .. } => &["reason"],
+            Event::Preflight { .. } => &["checks"],
+            Event::Tracker(TrackerEvent::Connected { .. }) => &["device"],
+            Event::Tracker(TrackerEvent::Lost { .. }) => &["reason"],
+            Event::Tracker(TrackerEvent::OtherSurfaces { .. }) => &["names"],
+            Event::Tracker(TrackerEvent::SeveralStreams { .. }) => &["streams"],
+            Event::Protocol(ProtocolEvent::ItemAnswered { .. }) => &["answer"],
+            Event::Probe(ProbeEvent::Answered { .. }) => &["answer", "confidence"],
+            Event::Protocol(ProtocolEvent::Tutorial(TutorialEvent::Answered { .. })) => &["choice"],
+            Event::Protocol(ProtocolEvent::CriterionWaived { .. }) | Event::Probe(ProbeEvent::Skipped { .. }) => {
+                &["reason"]
+            }
+            _ => &[],
+        }
+    }
+
     /// Name of the event in the log.
     pub fn kind(&self) -> &'static str {
         self.into()
@@ -256,3 +295,61 @@ pub struct WizardScreenContent {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub dialog: Option<String>,
 }
+
+/// What each kind of event means, for exports; without samples, which have tables of their own.
+pub const MEANINGS: &[(&str, &str)] = &[
+    ("advised", "The assistant computed a recommendation; seen only if an offer follows"),
+    (
+        "belief_estimated",
+        "The participant's belief before a press was estimated; the probabilities stand in the table of beliefs",
+    ),
+    ("calibration", "A step of the gaze accuracy check"),
+    ("clock_jumped", "The wall clock moved against session time: the computer stood still, or its clock was set"),
+    ("display", "A report of the participant's display"),
+    ("focus_lost", "The wizard's terminal lost the keyboard"),
+    ("focus_regained", "The wizard's terminal has the keyboard again"),
+    ("human_waits", "The participant has not pressed for unusually long by its own intervals"),
+    ("kitchen_corrected", "The wizard corrected what the program thought of a place"),
+    ("marker", "The wizard marked this moment"),
+    ("marker_worded", "The wizard's words about a moment marked before"),
+    ("offer_closed", "An offer to the wizard closed"),
+    ("offer_opened", "A recommendation was offered to the wizard"),
+    ("order_cleared", "A served order disappeared"),
+    ("order_shown", "An order appeared"),
+    (
+        "participant_believes",
+        "What a simulated participant believed before its press; the probabilities stand in the table of beliefs",
+    ),
+    ("preflight", "The checks before the trial"),
+    ("press", "The participant or the robot pressed a button"),
+    ("probe", "A freeze probe: the task stands still, and the participant is asked what it believes"),
+    ("protocol", "A step of the study around the trial: consent, phases, tutorial, questionnaires"),
+    ("robot_aborts", "The robot gave up its press"),
+    ("robot_driven", "Somebody chose the robot's next press"),
+    ("robot_held", "Somebody holds the robot before its next press"),
+    (
+        "robot_idles",
+        "The robot has nothing useful to do: there is no order, or it waits for a press of the participant",
+    ),
+    ("robot_intends", "The robot sets out for a button"),
+    ("robot_released", "The held robot goes on"),
+    ("robot_resumed", "The wizard lets the stopped robot go on"),
+    ("robot_safety", "The safety mode of the arm changed"),
+    ("robot_skipped", "Somebody skipped the robot's press"),
+    ("robot_stopped", "The wizard stopped the robot"),
+    ("robot_touched", "Somebody touched the arm"),
+    ("screen", "What the wizard sees changed"),
+    ("session_ended", "The recording is complete"),
+    ("signal_drawn", "The first frame with a signal was drawn at the console"),
+    ("signal_ended", "A signal disappeared"),
+    ("signal_shown", "A signal was shown to the participant"),
+    ("tracker", "An event of the eye tracker"),
+    ("trial_aborted", "The trial was aborted and does not count"),
+    ("trial_ended", "The trial is over"),
+    ("trial_excluded", "The trial is left out of the analysis"),
+    ("trial_included", "The trial counts again"),
+    ("trial_paused", "The trial's clock stands still"),
+    ("trial_resumed", "The trial's clock goes on"),
+    ("trial_started", "The trial starts with an empty kitchen"),
+    ("unblinded", "The wizard sees from now on what concepts would send"),
+];

@@ -27,7 +27,7 @@ use tomcom_core::kitchen::{
 };
 
 const STRATA: usize = 4;
-/// So many can be looked through in the time of a question.
+/// Largest number of answers: a participant can read these in the time of a question.
 const MOST_CHOICES: usize = 12;
 /// The answer that stands for all that a question does not show, by its name in the log.
 pub const SOMETHING_ELSE: &str = "something else";

@@ -12,7 +12,7 @@ use crate::apply::{pause_clock, resume_clock};
 use crate::probe_sampling::SOMETHING_ELSE;
 use crate::probe_settings::ProbeSpec;
 use crate::wall_display::AnswerDevice;
-use crate::{Event, Session, SessionSpec, TimelineEvent, TimestampedEvent, TrialPhase, probe_sampling};
+use crate::{Event, Session, SessionSpec, TimestampedEvent, TrialPhase, probe_sampling};
 use tomcom_core::base::rng::{Stream, shuffle, stream};
 use tomcom_core::base::time::SessionTime;
 
@@ -493,7 +493,7 @@ pub(crate) fn start(session: &mut Session) {
 /// Returns for how long the task stood still, if the event lets it continue.
 pub(crate) fn apply(session: &mut Session, now: SessionTime, event: &ProbeEvent) -> Option<SessionTime> {
     if !matches!(event, ProbeEvent::Asked { .. } | ProbeEvent::Answered { .. }) {
-        session.note(now, TimelineEvent::Probe(event.clone()));
+        session.note_event(now, &Event::Probe(event.clone()));
     }
     match event {
         ProbeEvent::Requested => {

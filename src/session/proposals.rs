@@ -1,7 +1,7 @@
 //! Proposed presses (of the concept DEV) on the participant's display: which presses are still to be made, and when the
 //! proposal is out of date.
 
-use crate::{Session, TimelineEvent};
+use crate::{Event, Session, TimelineEvent};
 use tomcom_core::communication::{Signal, unavailable};
 use tomcom_core::kitchen::Agent;
 
@@ -9,7 +9,11 @@ use tomcom_core::kitchen::Agent;
 /// press of another button, none are left.
 pub fn left(session: &Session) -> Option<&[String]> {
     let Signal::Propose(presses) = &session.shown.as_ref()?.signal else { return None };
-    let since = session.timeline.iter().rev().take_while(|entry| !matches!(entry.what, TimelineEvent::Signal { .. }));
+    let since = session
+        .timeline
+        .iter()
+        .rev()
+        .take_while(|entry| !matches!(entry.what, TimelineEvent::Noted(Event::SignalShown { .. })));
     let mut made: Vec<&str> = since
         .filter_map(|entry| match entry.what {
             TimelineEvent::Press { agent: Agent::Human, button, .. } => {
@@ -33,8 +37,8 @@ pub fn is_outdated(session: &Session) -> bool {
 pub(crate) fn was_made(session: &Session) -> bool {
     let newest = session.timeline.iter().rev().find(|entry| match &entry.what {
         TimelineEvent::Press { agent, .. } => *agent == Agent::Human,
-        TimelineEvent::Signal { signal, .. } => matches!(signal, Signal::Propose(_)),
+        TimelineEvent::Noted(Event::SignalShown { signal, .. }) => matches!(signal, Signal::Propose(_)),
         _ => false,
     });
-    newest.is_some_and(|entry| matches!(entry.what, TimelineEvent::Signal { .. }))
+    newest.is_some_and(|entry| matches!(entry.what, TimelineEvent::Noted(Event::SignalShown { .. })))
 }

@@ -168,6 +168,32 @@ impl StudyProtocolState {
     }
 }
 
+/// What was done of a phase.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PhaseProgress {
+    /// Number of steps of an instruction or debriefing.
+    pub ticked: usize,
+    pub tutorial_over: bool,
+    pub trial_over: bool,
+    /// Whether the answers to the questionnaire are final.
+    pub confirmed: bool,
+}
+
+impl PhaseProgress {
+    /// Why the phase is not done; `None` if it is.
+    pub fn lacks(self, phase: &PhaseSpec) -> Option<&'static str> {
+        let (is_done, why) = match phase {
+            PhaseSpec::Instruction { steps } | PhaseSpec::Debriefing { steps } => {
+                (self.ticked == steps.len(), "not every step of this phase is done")
+            }
+            PhaseSpec::Tutorial { .. } => (self.tutorial_over, "the participant is not through the tutorial"),
+            PhaseSpec::Trial | PhaseSpec::Familiarisation => (self.trial_over, "the trial is not over"),
+            PhaseSpec::Questionnaire { .. } => (self.confirmed, "the answers to the questionnaire are not confirmed"),
+        };
+        (!is_done).then_some(why)
+    }
+}
+
 impl Session {
     /// `None` if the recording belongs to no plan.
     pub fn step(&self) -> Option<(&PlanPosition, &StudyProtocolState)> {
@@ -208,19 +234,13 @@ impl Session {
         if self.aborted.is_some() {
             return Some("the trial was aborted");
         }
-        match self.study_phase()? {
-            PhaseSpec::Instruction { .. } | PhaseSpec::Debriefing { .. } => {
-                protocol.ticks.contains(&false).then_some("not every step of this phase is done")
-            }
-            PhaseSpec::Tutorial { .. } => {
-                let is_over = protocol.tutorial.as_ref().is_some_and(|tutorial| tutorial.is_over);
-                (!is_over).then_some("the participant is not through the tutorial")
-            }
-            PhaseSpec::Trial | PhaseSpec::Familiarisation => (!self.is_trial_over()).then_some("the trial is not over"),
-            PhaseSpec::Questionnaire { .. } => {
-                (!protocol.confirmed).then_some("the answers to the questionnaire are not confirmed")
-            }
-        }
+        let progress = PhaseProgress {
+            ticked: protocol.ticks.iter().filter(|ticked| **ticked).count(),
+            tutorial_over: protocol.tutorial.as_ref().is_some_and(|tutorial| tutorial.is_over),
+            trial_over: self.is_trial_over(),
+            confirmed: protocol.confirmed,
+        };
+        progress.lacks(self.study_phase()?)
     }
 
     /// Whether all phases are done or the trial was aborted; true without a plan.

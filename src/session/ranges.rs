@@ -4,6 +4,7 @@
 
 use serde::Serialize;
 
+use crate::study_arm::StudyArm;
 use tomcom_core::base::number_range::{self, NumberRange, OutOfRange, numbers};
 
 /// The table of a session file with the parameters of the human model; a file with them alone has no such table.
@@ -212,9 +213,9 @@ const OF_TRIALS: [NumberRange; 51] = [
     NumberRange::real("plan.familiarisation.error_rate", [0.0, 1.0], "", "the setting is a share of presses"),
     NumberRange::whole(
         "plan.questionnaire.after",
-        [1.0, 6.0],
+        [1.0, StudyArm::ALL.len() as f64],
         "",
-        "participants have one to six trials, after which a questionnaire can follow",
+        "each participant has one trial in each condition, after which a questionnaire can follow",
     ),
     NumberRange::real(
         "plan.aims.margin",

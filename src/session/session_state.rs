@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::event::{SignalEndReason, TrialEndReason};
+use crate::event::{Event, TrialEndReason};
 use crate::gaze_check::{AcceptedGazeCheck, RunningGazeCheck};
-use crate::probes::{ProbeEvent, TrialProbes};
+use crate::probes::TrialProbes;
 use crate::protocol::StudyProtocolState;
 use crate::settings::{Condition, GazeSource, WizardVisibility};
 use crate::study_arm::StudyArm;
@@ -240,7 +240,8 @@ impl Session {
     /// Whether nothing happened that somebody would miss: no trial was begun, no note written, no eye tracker sent
     /// anything, no gaze check was accepted and, in a plan, nothing agreed to, ticked or answered.
     pub fn is_empty(&self) -> bool {
-        let is_kept = |what: &TimelineEvent| matches!(what, TimelineEvent::Trial(_) | TimelineEvent::Marker(_));
+        let is_kept =
+            |what: &TimelineEvent| matches!(what, TimelineEvent::Trial(_) | TimelineEvent::Noted(Event::Marker { .. }));
         let is_begun = self.protocol.as_ref().is_some_and(StudyProtocolState::is_begun);
         let has_tracker = !matches!(self.spec.participant.gaze, GazeSource::Mouse | GazeSource::Simulated);
         let is_fed = has_tracker && (self.gaze.samples > 0 || self.tracker.dropped.malformed > 0);
@@ -254,6 +255,10 @@ impl Session {
 
     pub(crate) fn note(&mut self, time: SessionTime, what: TimelineEvent) {
         self.timeline.push(TimelineEntry { time, what });
+    }
+
+    pub(crate) fn note_event(&mut self, time: SessionTime, event: &Event) {
+        self.note(time, TimelineEvent::Noted(event.clone()));
     }
 }
 
@@ -285,45 +290,17 @@ pub enum TimelineEvent {
         /// Why, and the location that the reason is about; `None` if the press had an effect.
         no_effect: Option<(NoEffectReason, LocationId)>,
     },
-    Signal {
-        by: Sender,
-        signal: Signal,
-    },
-    SignalEnded(SignalEndReason),
     Served {
         order: LocationId,
     },
     OrderShown {
         order: LocationId,
     },
-    Marker(String),
-    RobotStopped,
-    /// By itself: a protective stop or a fault.
-    ArmStopped {
-        mode: SafetyMode,
-        /// If a contact stopped the arm.
-        force_n: Option<f64>,
-        /// The faulty joint, from 1.
-        joint: Option<u8>,
-    },
-    ArmTouched {
-        force_n: f64,
-    },
-    RobotResumed,
-    RobotHeld,
-    RobotReleased,
+    /// The press that the wizard skipped.
     RobotSkipped(ButtonId),
-    RobotDriven(ButtonId),
-    Corrected {
-        location: LocationId,
-    },
     Trial(TrialPhase),
-    /// Other than a question or an answer.
-    Probe(ProbeEvent),
-    Excluded(String),
-    Included,
-    /// Whether the terminal has keyboard focus.
-    Focus(bool),
+    /// The event itself.
+    Noted(Event),
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]

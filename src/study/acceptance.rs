@@ -5,8 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use crate::statistics::{mean, sample_sd};
-use crate::trial_statistics::{QuestionnaireAnswer, TrialStatistics};
-use tomcom_session::plan::QuestionnaireItemKind;
+use crate::trial_statistics::{AskedItem, QuestionnaireAnswer, TrialStatistics};
 use tomcom_session::study_arm::StudyArm;
 
 /// Acceptance of the assistance: each participant's mean answer, after assisted trials, to the questionnaire items
@@ -28,12 +27,8 @@ pub struct Acceptance {
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ItemSummary {
-    pub questionnaire: String,
-    pub item: String,
-    pub text: String,
-    pub about: Option<String>,
-    pub reversed: bool,
-    pub kind: QuestionnaireItemKind,
+    #[serde(flatten)]
+    pub asked: AskedItem,
     /// Condition of the trial after which the item was asked; `None` for items asked before the trials.
     pub condition: Option<StudyArm>,
     /// Number of points of the rating scale; `None` for other kinds of item.
@@ -68,16 +63,16 @@ pub(super) fn scores(trials: &[&TrialStatistics]) -> Vec<ScoreSummary> {
         let mut occasions: Vec<(&str, bool)> = Vec::new();
         for answered in &trial.answers {
             // Every answer of an occasion has the occasion's score, so the score is taken from one answer only.
-            let occasion = (answered.questionnaire.as_str(), answered.before);
+            let occasion = (answered.asked.questionnaire.as_str(), answered.before);
             let Some(score) = answered.score.filter(|_| !occasions.contains(&occasion)) else { continue };
             occasions.push(occasion);
             let condition = asked_after(trial, answered);
             let is_it =
-                |one: &ScoreSummary| (&one.questionnaire, one.condition) == (&answered.questionnaire, condition);
+                |one: &ScoreSummary| (&one.questionnaire, one.condition) == (&answered.asked.questionnaire, condition);
             match found.iter_mut().find(|one| is_it(one)) {
                 Some(one) => one.scores.push(score),
                 None => found.push(ScoreSummary {
-                    questionnaire: answered.questionnaire.clone(),
+                    questionnaire: answered.asked.questionnaire.clone(),
                     condition,
                     scores: vec![score],
                     mean: None,
@@ -100,8 +95,9 @@ pub(super) fn items(trials: &[&TrialStatistics]) -> Vec<ItemSummary> {
         for answered in &trial.answers {
             let condition = asked_after(trial, answered);
             let is_it = |(item, _): &(ItemSummary, Vec<f64>)| {
-                (&item.questionnaire, &item.item, item.condition, item.kind, item.points)
-                    == (&answered.questionnaire, &answered.item, condition, answered.kind, answered.points)
+                let (one, other) = (&item.asked, &answered.asked);
+                (&one.questionnaire, &one.item, item.condition, one.kind, item.points)
+                    == (&other.questionnaire, &other.item, condition, other.kind, answered.points)
             };
             let at = match items.iter().position(is_it) {
                 Some(at) => at,
@@ -136,12 +132,7 @@ impl ItemSummary {
     fn without_answers(answered: &QuestionnaireAnswer, condition: Option<StudyArm>) -> ItemSummary {
         let choices = answered.points.map_or(answered.options.len(), usize::from);
         ItemSummary {
-            questionnaire: answered.questionnaire.clone(),
-            item: answered.item.clone(),
-            text: answered.text.clone(),
-            about: answered.about.clone(),
-            reversed: answered.reversed,
-            kind: answered.kind,
+            asked: answered.asked.clone(),
             condition,
             points: answered.points,
             counts: vec![0; choices],
@@ -156,7 +147,7 @@ impl ItemSummary {
 pub(super) fn acceptance(trials: &[&TrialStatistics]) -> Option<Acceptance> {
     let mut by_participant: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
     for trial in trials.iter().filter(|trial| trial.is_assisted()) {
-        for answered in trial.answers.iter().filter(|one| one.about.as_deref() == Some("acceptance")) {
+        for answered in trial.answers.iter().filter(|one| one.asked.about.as_deref() == Some("acceptance")) {
             let of_one = by_participant.entry(&trial.participant).or_default();
             of_one.extend(answered.share);
         }

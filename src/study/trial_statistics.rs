@@ -114,8 +114,9 @@ pub struct FalseBeliefErrors {
     pub episodes: Option<u64>,
 }
 
+/// An item of a questionnaire.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct QuestionnaireAnswer {
+pub struct AskedItem {
     pub questionnaire: String,
     pub item: String,
     pub text: String,
@@ -123,6 +124,12 @@ pub struct QuestionnaireAnswer {
     /// Whether agreement with the item's statement counts against the construct.
     pub reversed: bool,
     pub kind: QuestionnaireItemKind,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct QuestionnaireAnswer {
+    #[serde(flatten)]
+    pub asked: AskedItem,
     pub answer: Option<AnswerValue>,
     /// Number of points of the item's rating scale; `None` for other kinds of item.
     pub points: Option<u8>,

@@ -1,8 +1,8 @@
 //! Recordings as a BIDS data set: every event has a row, durations are those of the log, and no two codes become one label.
 
 use strum::VariantNames;
+use tomcom_session::event::MEANINGS;
 use tomcom_study::analysis::bids::dataset::{BidsLabelMap, session_label};
-use tomcom_study::analysis::bids::events::LEVELS;
 use tomcom_study::bids_export::{BidsSummary, describe, export};
 
 use crate::support::*;
@@ -42,7 +42,7 @@ fn every_event_of_the_golden_recordings_has_its_row() {
     let out = folder("rows");
     let summary = golden(&names, &out, false);
     assert_eq!(summary.recordings.len(), names.len());
-    let known: BTreeSet<&str> = LEVELS.iter().map(|(kind, _)| *kind).collect();
+    let known: BTreeSet<&str> = MEANINGS.iter().map(|(kind, _)| *kind).collect();
     for one in &summary.recordings {
         let name = one.recording.file_stem().expect("a name").to_string_lossy().into_owned();
         let (events, counts) = (log(&name), one.rows);
@@ -67,7 +67,7 @@ fn every_event_of_the_golden_recordings_has_its_row() {
 #[test]
 fn every_kind_of_event_but_samples_has_a_meaning() {
     let names: BTreeSet<&str> = Event::VARIANTS.iter().copied().collect();
-    let meant: BTreeSet<&str> = LEVELS.iter().map(|(kind, _)| *kind).collect();
+    let meant: BTreeSet<&str> = MEANINGS.iter().map(|(kind, _)| *kind).collect();
     let missing: Vec<&&str> = names.symmetric_difference(&meant).collect();
     assert_eq!(missing, [&"gaze", &"robot_moves"]);
 }

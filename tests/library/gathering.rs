@@ -182,7 +182,7 @@ fn copies_count_once_and_are_told() {
     assert_eq!(copies, [(elsewhere_name.as_str(), first_name.as_str()), (&copied_name, &first_name)]);
     assert_eq!(number(&[root.clone(), root.join("backup")]), 1);
     // A plan goes on where it was, and does not offer the copy of a recording.
-    let made = recordings::of_plan(&root, "paper").expect("recordings");
+    let made = recordings::of_plan(&root, "paper").expect("recordings").0;
     let made: Vec<(&str, &RecordingOutcome)> = made.iter().map(|one| (one.recording.as_str(), &one.outcome)).collect();
     assert_eq!(made.len(), 1, "{made:?}");
     assert_eq!(made[0].0, "P01-1");
@@ -255,7 +255,7 @@ fn a_plan_does_not_offer_a_copy_that_was_made_before_the_end() {
     let text = fs::read_to_string(first.join(LOG_NAME)).expect("a log");
     fs::create_dir_all(root.join("A copy")).expect("a folder");
     fs::write(root.join("A copy").join(LOG_NAME), &text[..text.len() / 2]).expect("written");
-    let made = recordings::of_plan(&root, "paper").expect("recordings");
+    let made = recordings::of_plan(&root, "paper").expect("recordings").0;
     assert_eq!(made.iter().map(|one| one.recording.as_str()).collect::<Vec<_>>(), ["P01-1"]);
 }
 
@@ -393,7 +393,7 @@ fn every_reader_has_the_corrected_code_until_it_is_taken_back() {
     let place = summary.recordings.iter().find(|one| one.recording == recording.clone().into()).expect("exported");
     assert!(place.place.starts_with("sub-P03/"), "{}", place.place);
     // The plan: P03 has the trial, and P02 does it again.
-    let made = recordings::of_plan(&out, "paper").expect("recordings");
+    let made = recordings::of_plan(&out, "paper").expect("recordings").0;
     let done = |participant: usize| {
         let progress = ParticipantProgress::from_recordings(&plan, participant, &made).expect("recordings of the plan");
         progress.steps.iter().map(|step| step.is_done).collect::<Vec<bool>>()

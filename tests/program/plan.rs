@@ -11,7 +11,7 @@ use tomcom_session::log::LOG_NAME;
 use tomcom_session::plan::{PlanPosition, Study, WantedRecording};
 use tomcom_session::settings::Condition;
 
-use crate::program::{folder, json, refused, tiny_plan, tomcom, verified};
+use crate::program::{done, folder, json, refused, tiny_plan, tomcom, verified};
 use crate::pseudo_terminal::Terminal;
 
 fn study() -> Study {
@@ -51,7 +51,13 @@ fn simulated_participants_have_both_trials_of_the_plan() {
     let same = Path::new("seed1-P01-1").join(LOG_NAME);
     assert!(fs::read(alone.join(&same)).expect("a log") == fs::read(out.join(&same)).expect("a log"));
     let plan = json(&["plan", "sessions/study.toml", "--out", out_name]);
-    assert_eq!(plan["finished"], 0, "simulated trials fill no plan");
+    assert_eq!(
+        (&plan["finished"], &plan["simulated"]),
+        (&Value::from(0), &Value::from(3)),
+        "simulated trials fill no plan"
+    );
+    let told = done(&["plan", "sessions/study.toml", "--out", out_name]);
+    assert!(told.ends_with("not counted: 3 simulated recordings of the plan\n"), "{told}");
     refused(&["simulate", "sessions/study.toml", "--trials", "29", "--out", out_name], "--trials 29");
 }
 
@@ -177,6 +183,8 @@ fn a_participant_goes_through_a_plan_at_the_console_and_over_a_kill() {
     terminal.key(".");
     terminal.see("questionnaire");
     terminal.kill();
+    let listed = done(&["list", &out]);
+    assert_eq!(listed.matches(" cut ").count(), 1, "the recording that was killed:\n{listed}");
     assert_eq!(first(&session, &out)["next"]["is"], "choose");
     check_goes_on_after_a_kill(&terminal, &session);
     terminal.is_whole(0);

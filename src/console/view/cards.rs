@@ -20,8 +20,8 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Sender;
 use tomcom_core::kitchen::{Agent, Dish};
 use tomcom_core::robot::SafetyMode;
-use tomcom_session::event::SignalEndReason;
-use tomcom_session::history::wording;
+use tomcom_session::event::Event;
+use tomcom_session::history::{event_words, wording};
 use tomcom_session::settings::{ArmKind, Condition, ParticipantKind};
 use tomcom_session::{Session, TimelineEvent, TrialPhase};
 
@@ -180,7 +180,7 @@ fn after(session: &Session, model: &ConsoleModel) -> Card {
     ] {
         keys.extend(model.keys.chord_for(&action).map(|key| (key, words.to_string())));
     }
-    Card { title: format!("Trial {}", wording::trial(session.phase)), facts, keys }
+    Card { title: format!("Trial {}", event_words::trial(session.phase)), facts, keys }
 }
 
 /// Lines of the card about stops of the simulated arm, in ISO's words; the timed arm cannot touch anybody.
@@ -191,9 +191,11 @@ fn stops(session: &Session) -> Vec<Fact> {
     let number = |is_it: &dyn Fn(&TimelineEvent) -> bool| {
         session.timeline.iter().filter(|entry| is_it(&entry.what)).count() as u64
     };
-    let of_mode = |wanted| number(&|what| matches!(what, TimelineEvent::ArmStopped { mode, .. } if *mode == wanted));
+    let of_mode = |wanted| {
+        number(&|what| matches!(what, TimelineEvent::Noted(Event::RobotSafety { mode, .. }) if *mode == wanted))
+    };
     let protective = count(of_mode(SafetyMode::ProtectiveStop), "protective stop", "protective stops");
-    let emergency = number(&|what| *what == TimelineEvent::RobotStopped);
+    let emergency = number(&|what| *what == TimelineEvent::Noted(Event::RobotStopped));
     let emergency = count(emergency, "emergency stop", "emergency stops");
     let mut facts = vec![fact("robot", format!("{protective}, {emergency}"), TextRole::Text)];
     let faults = of_mode(SafetyMode::Fault);
@@ -211,11 +213,11 @@ fn signals(session: &Session, model: &ConsoleModel) -> Vec<Fact> {
         let (mut sent, mut back, mut last) = (0u64, 0u64, None);
         for entry in &session.timeline {
             match &entry.what {
-                TimelineEvent::Signal { by: sender, .. } => {
+                TimelineEvent::Noted(Event::SignalShown { by: sender, .. }) => {
                     last = Some(*sender);
                     sent += u64::from(*sender == by);
                 }
-                TimelineEvent::SignalEnded(SignalEndReason::TakenBack) => back += u64::from(last == Some(by)),
+                TimelineEvent::Noted(Event::SignalEnded { .. }) => back += u64::from(last == Some(by)),
                 _ => {}
             }
         }
@@ -299,7 +301,7 @@ impl Card {
         }
     }
 
-    /// The keys in as many lines as they need in so many columns.
+    /// The keys, wrapped to this width in columns.
     fn key_lines(&self, columns: u16) -> Vec<&[(KeyChord, String)]> {
         let (mut lines, mut first, mut taken) = (Vec::new(), 0, 0);
         for (index, (chord, words)) in self.keys.iter().enumerate() {

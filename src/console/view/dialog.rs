@@ -142,12 +142,16 @@ pub fn preflight(brush: &mut Painter, screen: Rect, session: &Session, model: &C
             check.remedy.as_ref().map_or(Vec::new(), |remedy| wrap(remedy, room.saturating_sub(FIX.len() as u16)))
         })
         .collect();
-    let rows = checks.len() + remedies.iter().map(Vec::len).sum::<usize>();
+    let found: Vec<Vec<String>> = checks.iter().map(|check| wrap(&check.found, room)).collect();
+    let rows = found.iter().chain(&remedies).map(Vec::len).sum::<usize>();
     let inside = open(brush, screen, (columns, rows as u16 + 5), "Checks before the trial", "space stops the robot");
     let mut y = inside.y;
-    for (check, remedy) in checks.iter().zip(&remedies) {
-        line(brush, inside, y, check);
-        y += 1;
+    for ((check, found), remedy) in checks.iter().zip(&found).zip(&remedies) {
+        let role = line(brush, inside, y, check);
+        for words in found {
+            brush.parts(inside.x + FOUND, y, room, &[(words, role)]);
+            y += 1;
+        }
         for (row, words) in remedy.iter().enumerate() {
             let fix = if row == 0 { FIX } else { "     " };
             brush.parts(inside.x + FOUND, y, room, &[(fix, TextRole::Quiet), (words, TextRole::Text)]);
@@ -165,7 +169,8 @@ pub fn preflight(brush: &mut Painter, screen: Rect, session: &Session, model: &C
     brush.hints(inside.x + 1, inside.bottom().saturating_sub(1), inside.width.saturating_sub(2), hints);
 }
 
-fn line(brush: &mut Painter, inside: Rect, y: u16, check: &PreflightCheck) {
+/// Draws the verdict and the name of a check; returns the style of its finding.
+fn line(brush: &mut Painter, inside: Rect, y: u16, check: &PreflightCheck) -> TextRole {
     let (word, role) = match check.verdict {
         PreflightVerdict::Ok => ("ok", TextRole::Text),
         PreflightVerdict::Warning => ("warning", TextRole::Strong),
@@ -173,8 +178,7 @@ fn line(brush: &mut Painter, inside: Rect, y: u16, check: &PreflightCheck) {
     };
     brush.parts(inside.x + 1, y, 8, &[(word, role)]);
     brush.parts(inside.x + 10, y, FOUND - 11, &[(&check.name, TextRole::Text)]);
-    let x = inside.x + FOUND;
-    brush.parts(x, y, inside.right().saturating_sub(x + 1), &[(&check.found, role)]);
+    role
 }
 
 pub fn note(brush: &mut Painter, screen: Rect, session: &Session, text: &TextInput) {

@@ -8,8 +8,8 @@ use crate::console::key_action::KeyLayer;
 use crate::console::text_columns::width;
 use ratatui::layout::Rect;
 use tomcom_core::kitchen::Agent;
-use tomcom_session::history::wording;
-use tomcom_session::{Session, TimelineEntry, TimelineEvent};
+use tomcom_session::history::event_words;
+use tomcom_session::{Event, Session, TimelineEntry, TimelineEvent};
 
 /// Columns of the time on the trial's clock, and of the name of whoever acted: the longest is "assistant".
 const CLOCK: u16 = 7;
@@ -66,13 +66,13 @@ fn rows(
 
 fn row(brush: &mut Painter, line: Rect, session: &Session, model: &ConsoleModel, entry: &TimelineEntry) {
     let at = (session.trial_clock(model.now) - session.age(entry.time, model.now)).to_string();
-    let (who, what) = wording::happening(&session.kitchen, &entry.what);
+    let (who, what) = event_words::happening(&session.kitchen, &entry.what);
     let role = match &entry.what {
         TimelineEvent::Press { agent: Agent::Human, .. } => TextRole::Human,
         TimelineEvent::Press { agent: Agent::Robot, .. } => TextRole::Robot,
-        TimelineEvent::Signal { .. } | TimelineEvent::SignalEnded(_) => TextRole::Signal,
-        TimelineEvent::RobotStopped | TimelineEvent::ArmStopped { .. } => TextRole::Alarm,
-        TimelineEvent::ArmTouched { .. } => TextRole::Robot,
+        TimelineEvent::Noted(Event::SignalShown { .. } | Event::SignalEnded { .. }) => TextRole::Signal,
+        TimelineEvent::Noted(Event::RobotStopped | Event::RobotSafety { .. }) => TextRole::Alarm,
+        TimelineEvent::Noted(Event::RobotTouched { .. }) => TextRole::Robot,
         _ => TextRole::Strong,
     };
     let quiet = brush.style(TextRole::Quiet);

@@ -16,7 +16,7 @@ use crate::console::mouse::ClickAction;
 use crate::console::panels::{is_away, opens_difference};
 use crate::console::possible::is_possible;
 use crate::console::text_columns::width;
-use tomcom_session::history::wording;
+use tomcom_session::history::{event_words, wording};
 use tomcom_session::settings::ParticipantKind;
 use tomcom_session::{Session, TrialPhase};
 
@@ -162,7 +162,7 @@ pub fn message(brush: &mut Painter, regions: &PanelAreas, session: &Session, mod
         brush.text(area.x + 1, area.y, area.width - 1, &format!(" {} ", notice.text), style);
     } else if session.robot.arm.mode.has_stopped_itself() && session.robot.stopped {
         let arm = &session.robot.arm;
-        let why = wording::arm_stopped(arm.mode, arm.stopped_by_n, None);
+        let why = event_words::arm_stopped(arm.mode, arm.stopped_by_n, None);
         let resume = model.keys.chord_for(&KeyAction::ResumeRobot).filter(|_| model.playback.is_none());
         let resume = resume.map_or(String::new(), |key| format!("; {key} resumes the arm"));
         let alarm = brush.style(TextRole::Alarm);

@@ -346,7 +346,7 @@ impl Page {
         self.columns
     }
 
-    /// Adds a text to the page, in as many lines as it needs.
+    /// Adds a text to the page, wrapped to its width.
     pub(super) fn text(&mut self, indent: u16, text: &str, role: TextRole) {
         let lines = wrap(text, self.columns.saturating_sub(indent));
         self.lines.extend(lines.into_iter().map(|line| vec![(indent, line, role)]));

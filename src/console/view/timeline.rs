@@ -17,11 +17,10 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::offer::{Offer, OfferKeyKind, TAKEN_AFTER};
 use tomcom_core::kitchen::Agent;
-use tomcom_session::event::SignalEndReason;
 use tomcom_session::probes::ProbeEvent;
 use tomcom_session::replay::ReplayLandmark;
 use tomcom_session::settings::WizardVisibility;
-use tomcom_session::{Session, TimelineEntry, TimelineEvent, TrialPhase, offers};
+use tomcom_session::{Event, Session, TimelineEntry, TimelineEvent, TrialPhase, offers};
 
 /// Time that one terminal column of the timeline stands for, in seconds.
 const COLUMN_S: f64 = 0.5;
@@ -233,35 +232,33 @@ fn mark(
                 (false, true) => (row, signs.press.to_string(), role),
             }
         }
-        TimelineEvent::ArmTouched { .. } => (2, signs.touched.to_string(), TextRole::Alarm),
-        TimelineEvent::RobotStopped | TimelineEvent::ArmStopped { .. } => {
-            (2, signs.stopped.to_string(), TextRole::Alarm)
-        }
-        TimelineEvent::RobotResumed | TimelineEvent::RobotReleased => (2, signs.to.to_string(), TextRole::Robot),
-        TimelineEvent::RobotHeld => (2, signs.pause.to_string(), TextRole::Robot),
         TimelineEvent::RobotSkipped(_) => (2, signs.taken_back.to_string(), TextRole::Robot),
-        TimelineEvent::RobotDriven(_) => (2, signs.by_hand.to_string(), TextRole::Signal),
-        TimelineEvent::Corrected { .. } => (4, signs.by_hand.to_string(), TextRole::Signal),
-        TimelineEvent::Signal { signal, .. } => (3, signal_sign(session, model, signal), TextRole::Signal),
-        TimelineEvent::SignalEnded(SignalEndReason::TakenBack) => (3, signs.taken_back.to_string(), TextRole::Signal),
-        TimelineEvent::SignalEnded(SignalEndReason::Elapsed | SignalEndReason::Outdated) => return None,
         TimelineEvent::Served { .. } => (4, signs.served.to_string(), TextRole::Strong),
         TimelineEvent::OrderShown { .. } => (4, "+".to_string(), TextRole::Quiet),
-        TimelineEvent::Probe(ProbeEvent::Begun { .. }) => (5, "?".to_string(), TextRole::Strong),
-        TimelineEvent::Probe(ProbeEvent::Ended { .. }) => (5, signs.to.to_string(), TextRole::Strong),
-        TimelineEvent::Probe(_) => return None,
-        TimelineEvent::Excluded(_) => (5, signs.error.to_string(), TextRole::Signal),
-        TimelineEvent::Included => (5, signs.served.to_string(), TextRole::Signal),
-        TimelineEvent::Focus(false) => (5, "!".to_string(), TextRole::Alarm),
-        TimelineEvent::Focus(true) => return None,
-        TimelineEvent::Marker(note) => {
-            let number =
-                session.spec.console.notes.iter().position(|known| known == note).map(|index| (index + 1).to_string());
-            (5, number.unwrap_or("*".to_string()), TextRole::Strong)
-        }
         TimelineEvent::Trial(TrialPhase::Over(_)) => (5, signs.frame[5].to_string(), TextRole::Strong),
         TimelineEvent::Trial(TrialPhase::Paused) => (5, signs.pause.to_string(), TextRole::Strong),
         TimelineEvent::Trial(_) => (5, signs.to.to_string(), TextRole::Strong),
+        TimelineEvent::Noted(event) => match event {
+            Event::RobotTouched { .. } => (2, signs.touched.to_string(), TextRole::Alarm),
+            Event::RobotStopped | Event::RobotSafety { .. } => (2, signs.stopped.to_string(), TextRole::Alarm),
+            Event::RobotResumed | Event::RobotReleased { .. } => (2, signs.to.to_string(), TextRole::Robot),
+            Event::RobotHeld { .. } => (2, signs.pause.to_string(), TextRole::Robot),
+            Event::RobotDriven { .. } => (2, signs.by_hand.to_string(), TextRole::Signal),
+            Event::KitchenCorrected { .. } => (4, signs.by_hand.to_string(), TextRole::Signal),
+            Event::SignalShown { signal, .. } => (3, signal_sign(session, model, signal), TextRole::Signal),
+            Event::SignalEnded { .. } => (3, signs.taken_back.to_string(), TextRole::Signal),
+            Event::Probe(ProbeEvent::Begun { .. }) => (5, "?".to_string(), TextRole::Strong),
+            Event::Probe(ProbeEvent::Ended { .. }) => (5, signs.to.to_string(), TextRole::Strong),
+            Event::TrialExcluded { .. } => (5, signs.error.to_string(), TextRole::Signal),
+            Event::TrialIncluded => (5, signs.served.to_string(), TextRole::Signal),
+            Event::FocusLost => (5, "!".to_string(), TextRole::Alarm),
+            Event::Marker { note } => {
+                let notes = &session.spec.console.notes;
+                let number = notes.iter().position(|known| known == note).map(|index| (index + 1).to_string());
+                (5, number.unwrap_or("*".to_string()), TextRole::Strong)
+            }
+            _ => return None,
+        },
     })
 }
 

@@ -34,7 +34,7 @@ struct PageConnection {
     hub: Arc<ServerState>,
     place: Arc<ConnectionHandle>,
     life: PageLife,
-    /// Whether the session was told that the page is lost, since nothing was heard of it for a while.
+    /// Whether the session was told that the page is lost.
     is_told_lost: bool,
     page: String,
     waits: bool,
@@ -444,12 +444,12 @@ impl PageLife {
         (self.pinged + PING).min(self.gone_at())
     }
 
-    /// Whether nothing was heard of the browser for so long that its page counts as lost.
+    /// Whether the page counts as lost, since the browser has been silent for too long.
     pub fn is_silent(&self, now: Instant) -> bool {
         now >= self.heard + LOST
     }
 
-    /// Whether nothing was heard from the page for too long.
+    /// Whether the page has been silent for too long.
     pub fn is_gone(&self, now: Instant) -> bool {
         now >= self.gone_at()
     }

@@ -23,11 +23,7 @@ use tomcom_core::measures::JudgedPress;
 use tomcom_core::robot::JOINT_NAMES;
 use tomcom_session::event::Event;
 use tomcom_session::history::belief_track::BeliefSnapshot;
-use tomcom_session::probes::ProbeEvent;
-use tomcom_session::protocol::ProtocolEvent;
 use tomcom_session::settings::LslOutlet;
-use tomcom_session::tracker::TrackerEvent;
-use tomcom_session::tutorial::TutorialEvent;
 use tomcom_session::{Session, SessionSpec, TimelineEvent, TimestampedEvent};
 
 /// Number of packets of samples that may wait to be sent: the packets of 20 seconds at 200 gaze samples per second.
@@ -505,7 +501,7 @@ pub fn event_text(stamped: &TimestampedEvent) -> String {
     let mut text = json!({ "seq": stamped.seq, "t_ns": stamped.time });
     if let Value::Object(text) = &mut text {
         text.extend(fields(&stamped.event));
-        let private = private_fields(&stamped.event);
+        let private = stamped.event.private_fields();
         if !private.is_empty() {
             text.insert(LEFT_OUT.to_string(), json!(private));
         }
@@ -519,7 +515,7 @@ fn fields(event: &Event) -> Map<String, Value> {
         Ok(Value::Object(fields)) => fields,
         _ => Map::new(),
     };
-    fields.retain(|name, _| !private_fields(event).contains(&name.as_str()));
+    fields.retain(|name, _| !event.private_fields().contains(&name.as_str()));
     fields
 }
 
@@ -534,26 +530,5 @@ fn part_text(value: &Value) -> Option<String> {
         }
         Value::Array(parts) => Some(parts.iter().map(part_text).collect::<Option<Vec<_>>>()?.join("/")),
         _ => None,
-    }
-}
-
-/// Fields of an event that can identify a person, a computer or its folders; they are left out, since everybody in the
-/// network can read an LSL stream.
-fn private_fields(event: &Event) -> &'static [&'static str] {
-    match event {
-        Event::Marker { .. } | Event::MarkerWorded { .. } => &["note"],
-        Event::TrialAborted { .. } | Event::TrialExcluded { .. } => &["reason"],
-        Event::Preflight { .. } => &["checks"],
-        Event::Tracker(TrackerEvent::Connected { .. }) => &["device"],
-        Event::Tracker(TrackerEvent::Lost { .. }) => &["reason"],
-        Event::Tracker(TrackerEvent::OtherSurfaces { .. }) => &["names"],
-        Event::Tracker(TrackerEvent::SeveralStreams { .. }) => &["streams"],
-        Event::Protocol(ProtocolEvent::ItemAnswered { .. }) => &["answer"],
-        Event::Probe(ProbeEvent::Answered { .. }) => &["answer", "confidence"],
-        Event::Protocol(ProtocolEvent::Tutorial(TutorialEvent::Answered { .. })) => &["choice"],
-        Event::Protocol(ProtocolEvent::CriterionWaived { .. }) | Event::Probe(ProbeEvent::Skipped { .. }) => {
-            &["reason"]
-        }
-        _ => &[],
     }
 }

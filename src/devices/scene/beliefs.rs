@@ -9,7 +9,8 @@ use tomcom_core::kitchen::{Agent, AspectId, Kitchen, State, StateAspect};
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_core::mind::{RecordedBelief, RecordedEstimate};
-use tomcom_session::history::wording;
+use tomcom_session::history::error_reasons::why;
+use tomcom_session::history::{event_words, wording};
 use tomcom_session::{Event, Session, TimelineEntry, TimelineEvent, TimestampedEvent};
 
 /// Period of updates of the belief estimate between presses, in nanoseconds.
@@ -132,15 +133,15 @@ impl BeliefScene {
         error: Option<ShownError<'_>>,
     ) -> Option<EntityUpdate> {
         let (at, (_, pressed)) =
-            (moment_on_clock(session.trial_clock(entry.time)), wording::happening(&session.kitchen, &entry.what));
+            (moment_on_clock(session.trial_clock(entry.time)), event_words::happening(&session.kitchen, &entry.what));
         let was_error = std::mem::replace(&mut self.is_error, error.is_some());
         let own = std::mem::take(&mut self.own);
         let Some(error) = error else {
             self.press = format!("**Last press**, {at}: {pressed}. No error.\n");
             return was_error.then(|| EntityUpdate::new(ERRORS, EntityData::State(String::new())));
         };
-        let why = error.why(&session.kitchen);
-        self.press = format!("## Error {} at {at}: {pressed}\n\n**Why an error**: {why}.\n{own}", error.number);
+        let reason = why(&session.kitchen, error.press);
+        self.press = format!("## Error {} at {at}: {pressed}\n\n**Why an error**: {reason}.\n{own}", error.number);
         Some(EntityUpdate::new(ERRORS, EntityData::State(format!("{}: {pressed}", error.number))))
     }
 

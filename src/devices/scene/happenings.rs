@@ -8,10 +8,10 @@ use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::communication::{Sender, Signal, signals};
 use tomcom_core::kitchen::{Agent, AspectId, Kitchen};
 use tomcom_core::measures::JudgedPress;
-use tomcom_session::event::SignalEndReason;
-use tomcom_session::history::wording;
+use tomcom_session::history::error_reasons::why;
+use tomcom_session::history::{event_words, wording};
 use tomcom_session::protocol::ProtocolEvent;
-use tomcom_session::{Session, TimelineEntry, TimelineEvent, TimestampedEvent};
+use tomcom_session::{Event, Session, TimelineEntry, TimelineEvent, TimestampedEvent};
 
 /// Path of the error marks below the belief curves.
 const ERROR_MARKS: &str = "human/errors/marks";
@@ -73,14 +73,14 @@ fn short(text: &str) -> String {
 
 /// A line of the text log for a new entry of the timeline; presses that were judged errors are marked.
 pub fn entry(session: &Session, entry: &TimelineEntry, error: Option<ShownError<'_>>) -> EntityUpdate {
-    let (who, text) = wording::happening(&session.kitchen, &entry.what);
+    let (who, text) = event_words::happening(&session.kitchen, &entry.what);
     let text = if who.is_empty() { text } else { format!("{who}: {text}") };
-    match entry.what {
-        TimelineEvent::Press { agent, no_effect, .. } => {
+    match &entry.what {
+        &TimelineEvent::Press { agent, no_effect, .. } => {
             let entity = format!("{}/presses", agent.name());
             match error.filter(|_| agent == Agent::Human) {
                 Some(error) => {
-                    let text = format!("ERROR {}, {text} ({})", error.number, error.why(&session.kitchen));
+                    let text = format!("ERROR {}, {text} ({})", error.number, why(&session.kitchen, error.press));
                     say(&entity, SceneLogLevel::Error, text, entity_content::ERROR)
                 }
                 None if no_effect.is_none() => {
@@ -89,17 +89,21 @@ pub fn entry(session: &Session, entry: &TimelineEntry, error: Option<ShownError<
                 None => say(&entity, SceneLogLevel::Warning, text, entity_content::agent_colour(agent)),
             }
         }
-        TimelineEvent::Signal { by: Sender::Wizard, .. } => {
+        TimelineEvent::Noted(Event::SignalShown { by: Sender::Wizard, .. }) => {
             say("wizard/signals", SceneLogLevel::Info, text, entity_content::WIZARD)
         }
-        TimelineEvent::Signal { by: Sender::Assistant, .. } => {
+        TimelineEvent::Noted(Event::SignalShown { by: Sender::Assistant, .. }) => {
             say("assistant/signals", SceneLogLevel::Info, text, entity_content::ASSISTANT)
         }
-        TimelineEvent::SignalEnded(SignalEndReason::TakenBack) => {
+        TimelineEvent::Noted(Event::SignalEnded { .. }) => {
             say("wizard/signals", SceneLogLevel::Warning, text, entity_content::WIZARD)
         }
-        TimelineEvent::ArmStopped { .. } => say("robot/events", SceneLogLevel::Error, text, entity_content::ERROR),
-        TimelineEvent::ArmTouched { .. } => say("robot/events", SceneLogLevel::Warning, text, entity_content::ROBOT),
+        TimelineEvent::Noted(Event::RobotSafety { .. }) => {
+            say("robot/events", SceneLogLevel::Error, text, entity_content::ERROR)
+        }
+        TimelineEvent::Noted(Event::RobotTouched { .. }) => {
+            say("robot/events", SceneLogLevel::Warning, text, entity_content::ROBOT)
+        }
         _ if who == "wizard" || who == "note" => say("wizard/hands", SceneLogLevel::Info, text, entity_content::WIZARD),
         _ => say("trial/events", SceneLogLevel::Info, text, entity_content::QUIET),
     }
@@ -121,7 +125,7 @@ pub fn landmark(row: &EntityUpdate) -> Option<String> {
 }
 
 pub fn protocol(event: &ProtocolEvent) -> EntityUpdate {
-    say("trial/events", SceneLogLevel::Info, wording::protocol(event), entity_content::QUIET)
+    say("trial/events", SceneLogLevel::Info, event_words::protocol(event), entity_content::QUIET)
 }
 
 /// A press that was an error.
@@ -130,14 +134,6 @@ pub struct ShownError<'a> {
     /// Its number among the errors of the trial, from 1.
     pub number: usize,
     pub press: &'a JudgedPress,
-}
-
-impl ShownError<'_> {
-    /// Why the press was an error.
-    pub fn why(&self, kitchen: &Kitchen) -> String {
-        let words = wording::error(kitchen, self.press);
-        words.strip_prefix("error, ").unwrap_or(&words).to_string()
-    }
 }
 
 /// The error in this event, if its press was one.

@@ -19,7 +19,7 @@ mod observed;
 /// Recorded trials a kitchen, and presses of both agents in each.
 const TRIALS: u64 = 3;
 const PRESSES: u32 = 304;
-/// The reference takes part in so many events from the start of each trial.
+/// Number of events from the start of each trial in which the reference takes part.
 const REFERENCE_EVENTS: usize = 10_000;
 
 /// Times by kind of event.

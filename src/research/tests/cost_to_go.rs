@@ -132,8 +132,8 @@ fn a_proof_finds_what_the_search_does_not() {
     assert!(budget != ProofBudget::default(), "it took a search");
 }
 
-/// What people in rollouts decide by takes no search: in at least so many of these states the same presses of the human lead
-/// nearer as with one.
+/// Rollouts decide without search: the least share of these states in which the same presses of the human lead
+/// nearer as with a search.
 fn check_close(kitchen_name: &str, sample: &str, least_same: f64) {
     let kitchen = kitchen(kitchen_name);
     let recipes = kitchen.true_recipes();

@@ -10,7 +10,6 @@ use tomcom_core::kitchen::Kitchen;
 use tomcom_devices::lsl::{self, DiscoveredLslStream};
 use tomcom_devices::{gaze_file, pupil};
 use tomcom_session::SessionSpec;
-use tomcom_session::files::file_error::FileError;
 use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict, recorded_gaze};
 use tomcom_session::settings::{GazeSource, ParticipantKind, ParticipantSpec};
 use tomcom_session::tracker::TrackerSpec;
@@ -158,15 +157,6 @@ fn file(tracker: &TrackerSpec, kitchen: &Kitchen) -> Vec<PreflightCheck> {
     };
     match gaze_file::read(Path::new(path), &map, tracker) {
         Ok(found) => recorded_gaze(path, &found.summary),
-        Err(error) => failed(error.to_string(), told(&error)),
-    }
-}
-
-fn told(error: &FileError) -> String {
-    match error {
-        FileError::Unreadable { remedy, .. }
-        | FileError::Unwritable { remedy, .. }
-        | FileError::Unfit { remedy, .. }
-        | FileError::Wrong { remedy, .. } => remedy.clone(),
+        Err(error) => failed(error.to_string(), error.remedy().to_string()),
     }
 }

@@ -19,7 +19,7 @@ pub enum ParticipantDeletionError {
     Recording(RecordingWriteError),
     #[error("nothing was deleted: {0}")]
     #[diagnostic(transparent)]
-    File(Box<FileError>),
+    File(FileError),
     #[error("nothing was deleted: {}: cannot be deleted or written again: {reason}", path.display())]
     #[diagnostic(help("the right to write to the file's folder, on a disk with free space"))]
     Unwritable {
@@ -44,8 +44,8 @@ pub enum ParticipantDeletionError {
 pub fn delete(found: ParticipantData) -> Result<ParticipantData, ParticipantDeletionError> {
     let locks = found.recordings.iter().map(|folder| RecordingLock::take(folder));
     let locks = locks.collect::<Result<Vec<RecordingLock>, _>>().map_err(ParticipantDeletionError::Recording)?;
-    let again = find(&found.root, &found.temporary, &found.code)
-        .map_err(|error| ParticipantDeletionError::File(Box::new(error)))?;
+    let again =
+        find(&found.root, &found.temporary, &found.code).map_err(|error| ParticipantDeletionError::File(error))?;
     if again != found {
         return Err(ParticipantDeletionError::Changed { folder: found.root });
     }

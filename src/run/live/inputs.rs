@@ -9,7 +9,7 @@ use crate::run::operator_station::{PageInput, lost_since};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_devices::gaze_input::TrackerMessage;
-use tomcom_session::history::wording;
+use tomcom_session::history::event_words;
 use tomcom_session::preflight_checks::RejectedGaze;
 use tomcom_session::tracker::{TrackerEvent, TrackerRecording};
 use tomcom_session::wall_display::DisplayEvent;
@@ -103,7 +103,7 @@ impl Live {
         if let Some(event) = self.gaze.event(news, self.clock.now()) {
             if let Event::Tracker(told) = &event
                 && is_warning(told)
-                && let Some(words) = wording::tracker(told)
+                && let Some(words) = event_words::tracker(told)
             {
                 self.model.warn(words);
             }

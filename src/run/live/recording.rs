@@ -8,7 +8,7 @@ use crate::console::console_model::RecordingStatus;
 use crate::run::doctor::free_bytes;
 use tomcom_session::history::belief_track::{self, BeliefSnapshot};
 use tomcom_session::history::error_reasons::ExplainedError;
-use tomcom_session::history::wording;
+use tomcom_session::history::event_words;
 use tomcom_session::log::{LogWriter, RecordingWriteError};
 use tomcom_session::probes::ProbeEvent;
 use tomcom_session::settings::BellOccasion;
@@ -25,10 +25,10 @@ impl Live {
                 Event::SignalShown { .. } => self.undrawn = Some(stamped.seq),
                 Event::OfferOpened(ref advice) if advice.visible => self.ring(BellOccasion::Offer),
                 Event::RobotSafety { mode, force_n, joint } if mode.has_stopped_itself() => {
-                    self.model.say(NoticeLevel::Alarm, wording::arm_stopped(mode, force_n, joint));
+                    self.model.say(NoticeLevel::Alarm, event_words::arm_stopped(mode, force_n, joint));
                 }
                 Event::Probe(ref event @ (ProbeEvent::Delayed { .. } | ProbeEvent::Dropped { .. })) => {
-                    self.model.warn(wording::probe(event));
+                    self.model.warn(event_words::probe(event));
                 }
                 _ => {}
             }

@@ -14,8 +14,14 @@ use tomcom_core::base::text::{printable, printable_lines};
 
 pub type FileResult<T> = Result<T, FileError>;
 
+/// Boxed, so that results stay small.
 #[derive(Debug, thiserror::Error, Diagnostic)]
-pub enum FileError {
+#[error(transparent)]
+#[diagnostic(transparent)]
+pub struct FileError(Box<FileFault>);
+
+#[derive(Debug, thiserror::Error, Diagnostic)]
+enum FileFault {
     #[error("{}: cannot be read: {reason}", path.display())]
     Unreadable {
         path: PathBuf,
@@ -56,6 +62,12 @@ pub enum FileError {
     },
 }
 
+impl From<FileFault> for FileError {
+    fn from(fault: FileFault) -> FileError {
+        FileError(Box::new(fault))
+    }
+}
+
 impl FileError {
     /// An error at one place of a file's text. Control characters in the message are escaped.
     pub fn at(path: &Path, text: &str, span: Option<Range<usize>>, found: String, remedy: String) -> FileError {
@@ -68,21 +80,26 @@ impl FileError {
             SourceSpan::from((printable_lines(&text[..start]).len(), length))
         });
         let source = NamedSource::new(&name, printable_lines(text).into_owned());
-        FileError::Wrong { name, line, found: one_line(found), text: Arc::new(source), span, remedy }
+        let (found, text) = (one_line(found), Arc::new(source));
+        FileFault::Wrong { name, line, found, text, span, remedy }.into()
+    }
+
+    pub fn remedy(&self) -> &str {
+        let (FileFault::Unreadable { remedy, .. }
+        | FileFault::Unwritable { remedy, .. }
+        | FileFault::Unfit { remedy, .. }
+        | FileFault::Wrong { remedy, .. }) = &*self.0;
+        remedy
     }
 
     /// On one line with its remedy, for places that show no help below a message.
     pub fn with_remedy(&self) -> String {
-        let (FileError::Unreadable { remedy, .. }
-        | FileError::Unwritable { remedy, .. }
-        | FileError::Unfit { remedy, .. }
-        | FileError::Wrong { remedy, .. }) = self;
-        format!("{self}; wanted: {remedy}")
+        format!("{self}; wanted: {}", self.remedy())
     }
 
     /// An error of a folder, an option, or a file as a whole, for which no line can be named.
     pub fn from_finding(what: &Path, found: String, remedy: String) -> FileError {
-        FileError::Unfit { name: name_of(what), found: one_line(found), remedy }
+        FileFault::Unfit { name: name_of(what), found: one_line(found), remedy }.into()
     }
 
     /// A session or a recording needs an optional part which this build lacks.
@@ -97,7 +114,7 @@ impl FileError {
     }
 
     pub fn unreadable(path: &Path, reason: io::Error, remedy: &str) -> FileError {
-        FileError::Unreadable { path: path.to_path_buf(), reason, remedy: remedy.to_string() }
+        FileFault::Unreadable { path: path.to_path_buf(), reason, remedy: remedy.to_string() }.into()
     }
 
     /// An output file whose name the user chose.
@@ -106,7 +123,7 @@ impl FileError {
     }
 
     pub fn not_written(path: &Path, reason: io::Error, remedy: &str) -> FileError {
-        FileError::Unwritable { path: path.to_path_buf(), reason, remedy: remedy.to_string() }
+        FileFault::Unwritable { path: path.to_path_buf(), reason, remedy: remedy.to_string() }.into()
     }
 }
 

@@ -4,5 +4,6 @@
 pub mod belief_track;
 pub mod comparison;
 pub mod error_reasons;
+pub mod event_words;
 pub mod order_needs;
 pub mod wording;

@@ -18,7 +18,7 @@ use crate::{Event, LogHeader, person_code};
 pub enum DecisionError {
     #[error(transparent)]
     #[diagnostic(transparent)]
-    File(#[from] Box<FileError>),
+    File(#[from] FileError),
     #[error(transparent)]
     #[diagnostic(transparent)]
     Recording(#[from] RecordingWriteError),
@@ -26,12 +26,6 @@ pub enum DecisionError {
     #[error("found {found}")]
     #[diagnostic(help("{remedy}"))]
     Unfit { found: String, remedy: String },
-}
-
-impl From<FileError> for DecisionError {
-    fn from(error: FileError) -> DecisionError {
-        DecisionError::File(Box::new(error))
-    }
 }
 
 fn check_reason(reason: &str, may_be_empty: bool) -> Result<(), DecisionError> {

@@ -141,14 +141,8 @@ pub fn event_line(stamped: &TimestampedEvent) -> String {
 pub enum RecordingError {
     #[error(transparent)]
     #[diagnostic(transparent)]
-    File(#[from] Box<FileError>),
+    File(#[from] FileError),
     #[error(transparent)]
     #[diagnostic(transparent)]
     Recording(#[from] RecordingWriteError),
-}
-
-impl From<FileError> for RecordingError {
-    fn from(error: FileError) -> RecordingError {
-        RecordingError::File(Box::new(error))
-    }
 }

@@ -1,18 +1,19 @@
 //! A study: its plan with session settings and questionnaires, the settings of each recording, and the progress of
 //! participants, which follows from the recordings alone, so that the next step is correct after a crash at any time.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
+use serde_json::Value;
 
 use crate::SessionSpec;
 use crate::plan::{PhaseSpec, PlanPosition, PlanSpec, PracticeCriterion, StartingGroup};
 use crate::protocol::ProtocolEvent;
 use crate::questionnaire::Questionnaire;
-use crate::settings::{ConsoleSpec, GazeSource, ParticipantKind, ParticipantSpec, WizardVisibility};
-use crate::stream_settings::RerunSpec;
+use crate::settings::{GazeSource, ParticipantKind, WizardVisibility};
 use crate::study_arm::StudyArm;
-use crate::tracker::TrackerSpec;
 use crate::tutorial::Tutorial;
-use crate::wall_display::{AnswerDevice, DisplaySpec};
+use crate::wall_display::AnswerDevice;
 use tomcom_core::base::rng::mix;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_people::wizard::WizardKind;
@@ -204,23 +205,62 @@ fn set_arm(spec: &mut SessionSpec, arm: StudyArm) {
     }
 }
 
-/// Without addresses, viewers, appearance and texts of the wizard's console. Who takes part in a recording and which
-/// device its gaze comes from are not part of the plan either: both are chosen at the start of a recording and written
-/// to its header.
-fn what_can_change_a_trial(session: &SessionSpec) -> SessionSpec {
-    let ParticipantSpec { population, .. } = session.participant.clone();
-    let TrackerSpec { surface, corners, distance_m, .. } = session.tracker.clone();
-    let (tracker, display) = (TrackerSpec::default(), DisplaySpec::default());
-    SessionSpec {
-        participant: ParticipantSpec { population, ..ParticipantSpec::default() },
-        tracker: TrackerSpec { surface, corners, distance_m, ..tracker },
-        console: ConsoleSpec { visibility: session.console.visibility, ..ConsoleSpec::default() },
-        display: DisplaySpec { listen: display.listen, port: display.port, ..session.display.clone() },
-        rerun: RerunSpec::default(),
-        // The model's parameters are in `human`, and the layout's text is passed beside the settings.
-        human_model: None,
-        layout: String::new(),
-        ..session.clone()
+/// What cannot change a trial: addresses, viewers, appearance and texts of the wizard's console. Who takes part in a
+/// recording and which device its gaze comes from are no part of the plan either: both are chosen at the start of a
+/// recording and written to its header. The model's parameters are in `human`, and the layout's text stands beside the
+/// settings.
+const CANNOT_CHANGE_A_TRIAL: [&str; 26] = [
+    "layout",
+    "human_model",
+    "participant.code",
+    "participant.kind",
+    "participant.gaze",
+    "participant.gaze_port",
+    "participant.gaze_listen",
+    "participant.gaze_from",
+    "participant.gaze_senders",
+    "tracker.address",
+    "tracker.port",
+    "tracker.record",
+    "tracker.file",
+    "tracker.file_start_s",
+    "tracker.missing_confidence",
+    "tracker.gaps",
+    "console.ascii",
+    "console.theme",
+    "console.click_sends",
+    "console.keys",
+    "console.notes",
+    "console.reasons",
+    "console.bell",
+    "display.listen",
+    "display.port",
+    "rerun",
+];
+/// The settings that can change a trial, by their path. A switch that is off, as by default, is left out: a new one
+/// leaves the digests of all plans as they are.
+fn what_can_change_a_trial(session: &SessionSpec) -> BTreeMap<String, Value> {
+    let by_path = |session: &SessionSpec| {
+        let mut values = BTreeMap::new();
+        collect(serde_json::to_value(session).unwrap_or_default(), "", &mut values);
+        values
+    };
+    let default = toml::from_str(r#"layout = """#).map(|spec| by_path(&spec)).unwrap_or_default();
+    let is_off = |value: &Value| matches!(value, Value::Null | Value::Bool(false));
+    let mut values = by_path(session);
+    values.retain(|path, value| !is_off(value) || default.get(path) != Some(value));
+    values
+}
+
+fn collect(value: Value, path: &str, values: &mut BTreeMap<String, Value>) {
+    let below = |name: &str| if path.is_empty() { name.to_string() } else { format!("{path}.{name}") };
+    match value {
+        _ if CANNOT_CHANGE_A_TRIAL.contains(&path) => {}
+        Value::Object(fields) => fields.into_iter().for_each(|(name, value)| collect(value, &below(&name), values)),
+        Value::Array(items) => {
+            items.into_iter().enumerate().for_each(|(at, item)| collect(item, &below(&at.to_string()), values));
+        }
+        value => drop(values.insert(path.to_string(), value)),
     }
 }
 

@@ -6,13 +6,13 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value, json};
 
-use crate::analysis::event_lines;
 use tomcom_arm::kinematics::SerialArm;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::robot::{ArmSample, JOINT_NAMES};
 use tomcom_session::TimestampedEvent;
 use tomcom_session::event::Event;
 use tomcom_session::follower::SessionFollower;
+use tomcom_session::history::event_words;
 
 /// A channel of an MCAP file: its topic, the name of the type of its messages, and the JSON Schema of that type without title.
 pub struct McapChannel {
@@ -176,7 +176,7 @@ fn beliefs(stamped: &TimestampedEvent) -> Option<Value> {
 }
 
 fn words(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<Value> {
-    let line = event_lines::line(stamped, follower)?;
+    let line = event_words::line(stamped, follower)?;
     let is_error = || follower.judged.last().is_some_and(|press| press.seq == stamped.seq && press.verdict.error);
     let level = match &stamped.event {
         Event::Press { .. } if is_error() => WARNING,

@@ -3,7 +3,6 @@
 
 pub mod bids;
 pub mod comparison_summary;
-pub mod event_lines;
 pub mod fitting;
 #[cfg(feature = "mcap")]
 pub mod foxglove;

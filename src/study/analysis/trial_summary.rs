@@ -45,7 +45,10 @@ impl TrialSummary {
             (served.dish, presses)
         });
         let served = served.collect();
-        let signals = session.timeline.iter().filter(|entry| matches!(entry.what, TimelineEvent::Signal { .. }));
+        let signals = session
+            .timeline
+            .iter()
+            .filter(|entry| matches!(entry.what, TimelineEvent::Noted(Event::SignalShown { .. })));
         TrialSummary {
             human_actions: u64::from(session.presses[Agent::Human.index()]),
             robot_actions: u64::from(session.presses[Agent::Robot.index()]),

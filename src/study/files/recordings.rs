@@ -12,36 +12,42 @@ use tomcom_session::header::{FORMAT, PreviousPart};
 use tomcom_session::log::{
     LOG_NAME, MAX_LINE, RecordingLock, SameLogs, first_line, header_digest, read_header, ruling,
 };
-use tomcom_session::plan::{PhaseSpec, PlanPosition, PlanRecording, RecordingOutcome};
-use tomcom_session::protocol::{ProtocolEvent, StudyPhase};
+use tomcom_session::plan::{PlanPosition, PlanRecording, RecordingOutcome};
+use tomcom_session::protocol::{PhaseProgress, ProtocolEvent, StudyPhase};
+use tomcom_session::tutorial::TutorialEvent;
 use tomcom_session::{Event, TimestampedEvent};
 
 /// Live recordings of the study plan with this name in a folder, by folder name; the parts of a continued recording
-/// count as one recording, and copies of a log once. Simulated recordings and other files do not count. Errors: the
-/// folder or a recording in it cannot be read.
-pub fn of_plan(folder: &Path, plan: &str) -> FileResult<Vec<PlanRecording>> {
+/// count as one recording, and copies of a log once. Other files do not count; of simulated recordings of the plan, only
+/// their number is told. Errors: the folder or a recording in it cannot be read.
+pub fn of_plan(folder: &Path, plan: &str) -> FileResult<(Vec<PlanRecording>, u64)> {
     let mut found = BTreeMap::new();
+    let mut simulated = 0;
     let unreadable = |reason| FileError::unreadable(folder, reason, "the folder with the recordings, as --out");
     let entries = match fs::read_dir(folder) {
         Ok(entries) => entries,
-        Err(reason) if reason.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(reason) if reason.kind() == ErrorKind::NotFound => return Ok((Vec::new(), 0)),
         Err(reason) => return Err(unreadable(reason)),
     };
     for entry in entries {
         let path = entry.map_err(unreadable)?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        if let Some(mut part) = Part::read(&path.join(LOG_NAME), plan)? {
-            // A later decision in the file `exclusion.toml` beside the log takes precedence over the log.
-            if let Some(ruling) = ruling(&path)? {
-                part.told.excluded = Some(ruling.excluded.then_some(ruling.reason));
+        match Part::read(&path.join(LOG_NAME), plan)? {
+            FoundLog::Other => {}
+            FoundLog::Simulated => simulated += 1,
+            FoundLog::Live(mut part) => {
+                // A later decision in the file `exclusion.toml` beside the log takes precedence over the log.
+                if let Some(ruling) = ruling(&path)? {
+                    part.told.excluded = Some(ruling.excluded.then_some(ruling.reason));
+                }
+                found.insert(name, *part);
             }
-            found.insert(name, part);
         }
     }
     remove_copies(folder, &mut found)?;
     let continued: Vec<String> = found.values().filter_map(|part| part.continues.clone()).collect();
     let last = found.iter().filter(|(name, _)| !continued.contains(name));
-    Ok(last.map(|(name, part)| part.made(name, &found)).collect())
+    Ok((last.map(|(name, part)| part.made(name, &found)).collect(), simulated))
 }
 
 /// A copy of a cut recording would be offered to be continued, instead of the recording.
@@ -120,6 +126,14 @@ struct Part {
     told: PartProgress,
 }
 
+enum FoundLog {
+    Live(Box<Part>),
+    /// It fills no plan.
+    Simulated,
+    /// No recording, or one of another plan.
+    Other,
+}
+
 /// What the events of a part tell.
 #[derive(Debug, Default)]
 struct PartProgress {
@@ -128,6 +142,7 @@ struct PartProgress {
     phase: usize,
     /// Steps of the last phase that were ticked or, in a later part, unticked.
     ticks: BTreeMap<usize, bool>,
+    tutorial_over: bool,
     /// Whether the answers of the last phase were confirmed.
     confirmed: bool,
     presses: u32,
@@ -156,6 +171,7 @@ impl PartProgress {
                 self.instructed |= !matches!(phase, StudyPhase::Instruction | StudyPhase::Tutorial);
             }
             Event::Protocol(ProtocolEvent::Ticked { step, done }) => drop(self.ticks.insert(*step, *done)),
+            Event::Protocol(ProtocolEvent::Tutorial(TutorialEvent::Ended { .. })) => self.tutorial_over = true,
             Event::Protocol(ProtocolEvent::AnswersConfirmed) => self.confirmed = true,
             Event::Protocol(ProtocolEvent::CriterionChecked { met, .. }) => self.criterion_failed = !met,
             Event::Protocol(ProtocolEvent::CriterionWaived { .. }) => self.criterion_waived = true,
@@ -165,12 +181,14 @@ impl PartProgress {
 }
 
 impl Part {
-    /// Reads the log of one part of a recording; `None` if the recording does not belong to this study plan.
-    fn read(path: &Path, plan: &str) -> FileResult<Option<Part>> {
+    /// Reads the log of one part of a recording.
+    fn read(path: &Path, plan: &str) -> FileResult<FoundLog> {
         let file = match open_regular(path) {
             Ok(file) => file,
             // No log at this path: an empty folder, or a file beside the recordings.
-            Err(reason) if matches!(reason.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => return Ok(None),
+            Err(reason) if matches!(reason.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+                return Ok(FoundLog::Other);
+            }
             Err(reason) => return Err(FileError::unreadable(path, reason, "a readable recording")),
         };
         let mut lines = BufReader::with_capacity(1 << 16, file);
@@ -183,16 +201,19 @@ impl Part {
             Ok::<bool, FileError>(read > 0 && line.last() == Some(&b'\n'))
         };
         if !next(&mut line)? {
-            return Ok(None);
+            return Ok(FoundLog::Other);
         }
         // A recording with a damaged header is an error: its trial would be offered again otherwise.
         if !is_log(&line) {
-            return Ok(None);
+            return Ok(FoundLog::Other);
         }
         let header = read_header(path, String::from_utf8_lossy(&line).trim_end())?;
-        let Some(step) = header.session.step.filter(|step| step.plan == plan && header.started.is_some()) else {
-            return Ok(None);
+        let Some(step) = header.session.step.filter(|step| step.plan == plan) else {
+            return Ok(FoundLog::Other);
         };
+        if header.started.is_none() {
+            return Ok(FoundLog::Simulated);
+        }
         let mut part = Part {
             code: header.session.participant.code,
             recorded_as: header.correction.map(|correction| correction.before),
@@ -208,7 +229,7 @@ impl Part {
                 part.told.follow(&stamped.event);
             }
         }
-        Ok(Some(part))
+        Ok(FoundLog::Live(Box::new(part)))
     }
 
     fn made(&self, name: &str, parts: &BTreeMap<String, Part>) -> PlanRecording {
@@ -255,17 +276,17 @@ impl Part {
     /// Whether the last phase of the plan's step is done, after these parts, the last one first.
     fn is_last_phase_done(&self, parts: &[&Part]) -> bool {
         let since = parts.iter().position(|part| part.told.phase == self.step.phases.len());
-        let since = since.map_or(&[][..], |first| &parts[..=first]);
+        let (Some(first), Some(last)) = (since, self.step.phases.last()) else { return false };
+        let since = &parts[..=first];
         let mut ticks: BTreeMap<usize, bool> = BTreeMap::new();
         since.iter().rev().for_each(|part| ticks.extend(&part.told.ticks));
-        match self.step.phases.last() {
-            _ if since.is_empty() => false,
-            Some(PhaseSpec::Instruction { steps } | PhaseSpec::Debriefing { steps }) => {
-                ticks.values().filter(|done| **done).count() == steps.len()
-            }
-            Some(PhaseSpec::Questionnaire { .. }) => since.iter().any(|part| part.told.confirmed),
-            _ => true,
-        }
+        let progress = PhaseProgress {
+            ticked: ticks.values().filter(|done| **done).count(),
+            tutorial_over: since.iter().any(|part| part.told.tutorial_over),
+            trial_over: parts.iter().any(|part| part.told.trial_over),
+            confirmed: since.iter().any(|part| part.told.confirmed),
+        };
+        progress.lacks(last).is_none()
     }
 }
 

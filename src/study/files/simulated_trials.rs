@@ -156,8 +156,8 @@ fn simulate_trial(
     let cost = kept.take(kitchen);
     let (follower, found, moved) = match opened {
         SimulatedLogState::Whole => {
-            let mut replay = RecordingReplay::over(LogReader::open(&folder).map_err(Box::new)?, cost);
-            replay.run().map_err(Box::new)?;
+            let mut replay = RecordingReplay::over(LogReader::open(&folder)?, cost);
+            replay.run()?;
             (replay.follower, true, None)
         }
         SimulatedLogState::Begun { mut log, moved } => {

@@ -43,16 +43,10 @@ use tomcom_session::replay::SameKitchenCheck;
 pub enum StudyError {
     #[error(transparent)]
     #[diagnostic(transparent)]
-    File(#[from] Box<FileError>),
+    File(#[from] FileError),
     #[error(transparent)]
     #[diagnostic(transparent)]
     Export(#[from] AnalysisWriteError),
-}
-
-impl From<FileError> for StudyError {
-    fn from(error: FileError) -> StudyError {
-        StudyError::File(Box::new(error))
-    }
 }
 
 #[derive(Clone, Debug)]

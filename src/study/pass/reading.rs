@@ -19,7 +19,8 @@ use crate::robot_tally::{RobotEventSummary, RobotEventTally};
 use crate::standing::exclusion_status;
 use crate::tables::participants::{TutorialAnswerCollector, TutorialQuestionRow};
 use crate::trial_statistics::{
-    DisplayLosses, FalseBeliefErrors, QuestionnaireAnswer, SignalSenderWithParameter, TrialDetails, TrialStatistics,
+    AskedItem, DisplayLosses, FalseBeliefErrors, QuestionnaireAnswer, SignalSenderWithParameter, TrialDetails,
+    TrialStatistics,
 };
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::ConceptName;
@@ -266,7 +267,7 @@ fn lanes(pass: &mut ReplayPass) -> Vec<(String, Vec<CommunicationEvent>)> {
 
 fn contents(entry: &TimelineEntry) -> u64 {
     match &entry.what {
-        TimelineEvent::Signal { signal, .. } => signal.contents() as u64,
+        TimelineEvent::Noted(Event::SignalShown { signal, .. }) => signal.contents() as u64,
         _ => 0,
     }
 }
@@ -277,7 +278,7 @@ fn sent(session: &Session) -> Vec<CommunicationEvent> {
     for entry in &session.timeline {
         match &entry.what {
             TimelineEvent::Press { agent: Agent::Human, .. } => press += 1,
-            TimelineEvent::Signal { signal, .. } => {
+            TimelineEvent::Noted(Event::SignalShown { signal, .. }) => {
                 let content = CommunicationContent::from_signal(signal).content(&session.kitchen);
                 sent.push(CommunicationEvent { press, clock: clock_at(session, entry.time), content });
             }
@@ -400,12 +401,14 @@ fn confirmed_answers(session: &Session) -> Vec<QuestionnaireAnswer> {
     let answered = |(index, item): (usize, &QuestionnaireItem)| {
         let form = questionnaire.form(index);
         QuestionnaireAnswer {
-            questionnaire: questionnaire.name.clone(),
-            item: item.id.clone(),
-            text: item.text.clone(),
-            about: item.about.clone(),
-            reversed: item.reversed,
-            kind: item.kind.unwrap_or(QuestionnaireItemKind::Scale),
+            asked: AskedItem {
+                questionnaire: questionnaire.name.clone(),
+                item: item.id.clone(),
+                text: item.text.clone(),
+                about: item.about.clone(),
+                reversed: item.reversed,
+                kind: item.kind.unwrap_or(QuestionnaireItemKind::Scale),
+            },
             answer: protocol.given(index).cloned(),
             points: match form {
                 Some(AnswerFormat::Scale(scale)) => Some(scale.points),

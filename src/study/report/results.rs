@@ -219,21 +219,21 @@ fn asked_after(after: Option<StudyArm>) -> String {
 /// Answers in words are only counted, since they can identify their author.
 fn items(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let rows = figures.questionnaires.iter().map(|item| {
-        let mean = match (item.points, item.kind) {
+        let mean = match (item.points, item.asked.kind) {
             (Some(points), _) => format!("{} of {points}", number(item.mean, 1)),
             (None, QuestionnaireItemKind::Choice | QuestionnaireItemKind::Text) => String::new(),
             (None, _) => number(item.mean, 1).to_string(),
         };
         let counts = item.counts.iter().map(u64::to_string);
-        let counts: Vec<String> = match item.kind {
+        let counts: Vec<String> = match item.asked.kind {
             QuestionnaireItemKind::Choice => {
                 item.options.iter().zip(counts).map(|(text, count)| format!("{text}: {count}")).collect()
             }
             _ => counts.collect(),
         };
-        let between = if item.kind == QuestionnaireItemKind::Choice { ", " } else { " " };
+        let between = if item.asked.kind == QuestionnaireItemKind::Choice { ", " } else { " " };
         let after = asked_after(item.condition);
-        cells([&item.text, &after, &item.answers, &item.left_out, &mean, &counts.join(between)])
+        cells([&item.asked.text, &after, &item.answers, &item.left_out, &mean, &counts.join(between)])
     });
     let heads = ["item", "after", "answers", "skipped", "mean", "number of answers 1, 2, \u{2026}, or by option"];
     captions.table(

@@ -93,10 +93,10 @@ impl CsvRow for AnswerRow<'_> {
             "participant", "", "as in participants" => &row.trial.participant;
             "condition", "", "condition of the trial before it, or of the first trial if it was asked before that"
                 => row.trial.condition.name();
-            "questionnaire", "", "name" => &row.answer.questionnaire;
-            "item", "", "id of the item" => &row.answer.item;
-            "about", "", "construct that the item measures" => row.answer.about.as_ref();
-            "reversed", "", "whether agreement counts against the construct" => row.answer.reversed;
+            "questionnaire", "", "name" => &row.answer.asked.questionnaire;
+            "item", "", "id of the item" => &row.answer.asked.item;
+            "about", "", "construct that the item measures" => row.answer.asked.about.as_ref();
+            "reversed", "", "whether agreement counts against the construct" => row.answer.asked.reversed;
             "answer", "", format!(
                 "answer as given (not reversed): a point of the scale from 1, a number, a slider's position from 0 to 100, \
                 words, or ids of options separated by spaces; empty: skipped; {GUARDED}"
@@ -105,7 +105,7 @@ impl CsvRow for AnswerRow<'_> {
                 answer => answer.cell().into(),
             });
             "points", "points", "number of points of the scale; empty: no scale" => row.answer.points;
-            "kind", "", "scale, choice, number, text or slider" => row.answer.kind.name();
+            "kind", "", "scale, choice, number, text or slider" => row.answer.asked.kind.name();
             "asked", "", "before the first trial, or after the trial"
                 => (if row.answer.before { "before" } else { "after" });
             "score", "", "score of the whole questionnaire at this occasion, the same at all its items; empty: it has none, or an \

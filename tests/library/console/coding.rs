@@ -21,7 +21,9 @@ fn rated(party: CodingRaters, given: RaterCodes) -> Stage {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.session.spec.console.visibility = WizardVisibility::State;
     // As in a blinded replay, from which signals are taken out.
-    let is_signal = |what: &TimelineEvent| matches!(what, TimelineEvent::Signal { .. } | TimelineEvent::SignalEnded(_));
+    let is_signal = |what: &TimelineEvent| {
+        matches!(what, TimelineEvent::Noted(Event::SignalShown { .. } | Event::SignalEnded { .. }))
+    };
     stage.session.timeline.retain(|entry| !is_signal(&entry.what));
     stage.session.shown = None;
     let (kitchen, map) = (stage.session.kitchen.clone(), KeyFileBindings::default());

@@ -149,7 +149,7 @@ fn a_time_mark_is_set_at_once_and_gets_its_words_when_the_trial_stands() {
         .timeline
         .iter()
         .filter_map(|entry| match &entry.what {
-            TimelineEvent::Marker(note) if entry.time.as_secs_f64() > 22.0 => {
+            TimelineEvent::Noted(Event::Marker { note }) if entry.time.as_secs_f64() > 22.0 => {
                 Some((entry.time.as_secs_f64(), note.as_str()))
             }
             _ => None,
@@ -172,8 +172,8 @@ fn notes_in_words_are_written_after_the_trial_too_until_the_session_is_closed() 
     type_in(&mut stage, "was tired");
     let note = Event::Marker { note: "was tired".to_string() };
     assert_eq!(input(stage.key(KeyCode::Enter)), Some(note.clone()));
-    stage.at(25.0, note);
-    assert!(stage.session.timeline.iter().any(|entry| entry.what == TimelineEvent::Marker("was tired".to_string())));
+    stage.at(25.0, note.clone());
+    assert!(stage.session.timeline.iter().any(|entry| entry.what == TimelineEvent::Noted(note.clone())));
     stage.at(26.0, Event::SessionEnded);
     stage.wait(1.0);
     stage.key(KeyCode::Char('0'));

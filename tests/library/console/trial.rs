@@ -2,7 +2,7 @@
 
 use crossterm::event::KeyCode;
 use tomcom::console::ConsoleCommand;
-use tomcom::console::console_model::Dialog;
+use tomcom::console::console_model::{Dialog, LslStatus};
 use tomcom::console::gaze_check::AccuracyCheckAction;
 use tomcom::console::preflight::ParticipantDisplayHealth;
 use tomcom::console::preflight::checks;
@@ -115,6 +115,17 @@ fn a_trial_starts_at_once_if_all_is_ok_and_what_was_found_is_recorded() {
     stage.wait(1.0);
     stage.control('f');
     assert!(stage.notice().contains("only before the trial starts"), "{}", stage.notice());
+}
+
+#[test]
+fn a_long_finding_of_a_check_is_whole_on_a_narrow_screen() {
+    let mut stage = Stage::new("sushi", ParticipantKind::Keyboard);
+    let streams = ["tomcom-markers-P01", "tomcom-gaze-P01", "tomcom-beliefs-P01"];
+    stage.model.lsl = Some(LslStatus { streams: streams.map(str::to_string).to_vec(), sent: 0, lost: 0 });
+    stage.control('f');
+    for stream in streams {
+        stage.shows((80, 24), &[stream]);
+    }
 }
 
 #[test]

@@ -8,7 +8,6 @@ use tomcom_core::gaze::tags::SurfaceHomography;
 use tomcom_devices::gaze_file::{self, GazeFile};
 use tomcom_devices::pupil::message::{self, CaptureNotification, PupilMessage};
 use tomcom_devices::pupil::zmtp::ZmtpFrameAssembler;
-use tomcom_session::files::file_error::FileError;
 use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict, recorded_gaze};
 use tomcom_session::tracker::{MissingConfidence, TrackerSpec};
 
@@ -317,7 +316,7 @@ fn recordings_and_downloads_of_the_trackers_are_told_from_gaze_on_the_display() 
         (archive, "an archive", "unpack the archive"),
     ] {
         let error = gaze_file::read(&path, &map(), &from(0.0)).expect_err("no gaze on the display");
-        let FileError::Unfit { remedy: told, .. } = &error else { panic!("{error}") };
+        let told = error.remedy();
         assert!(error.to_string().contains(found) && told.contains(remedy), "{error}; {told}");
     }
     // The table is taken, and gaze in the picture is not.

@@ -5,7 +5,7 @@ use tomcom_session::plan::{
     NextRecording, ParticipantProgress, Participants, PlanRecording, RecordingOutcome, Study,
     orders as orders_of_conditions,
 };
-use tomcom_session::settings::ColourTheme;
+use tomcom_session::settings::{BellOccasion, ColourTheme};
 use tomcom_session::wall_display::RobotDepiction;
 
 use super::{folder, study};
@@ -133,7 +133,7 @@ fn the_trials_of_a_participant_ask_for_the_same_dishes_in_another_order() {
 fn the_digest_covers_all_that_can_change_a_trial_and_nothing_else() {
     let digest = |change: fn(&mut SessionSetup)| study(change).digest;
     let original = digest(|_| ());
-    let others: [NamedChange; 16] = [
+    let others: [NamedChange; 19] = [
         ("presses", |files| files.spec.trial.presses += 1),
         ("arm", |files| files.spec.robot.arm = ArmKind::Timed),
         ("signals", |files| files.spec.signals.shown_s += 1.0),
@@ -146,6 +146,9 @@ fn the_digest_covers_all_that_can_change_a_trial_and_nothing_else() {
         ("the clock on the display", |files| files.spec.display.clock = true),
         ("the count on the display", |files| files.spec.display.served = true),
         ("the robot on the display", |files| files.spec.display.arm = RobotDepiction::Arm),
+        ("spoken signals", |files| files.spec.display.voice = true),
+        ("a page that may be lost", |files| files.spec.display.pause_when_lost = Some(false)),
+        ("no tags, which are shown by default", |files| files.spec.display.tags = false),
         ("seed", |files| files.spec.seed += 1),
         ("aims", |files| files.spec.plan.as_mut().expect("a plan").aims.margin += 0.1),
         ("layout", |files| files.kitchen.layout.text.push('\n')),
@@ -154,9 +157,12 @@ fn the_digest_covers_all_that_can_change_a_trial_and_nothing_else() {
     for (what, change) in others {
         assert_ne!(digest(change), original, "{what}");
     }
-    let same: [NamedChange; 4] = [
+    let same: [NamedChange; 7] = [
         ("port", |files| files.spec.display.port += 1),
         ("viewer", |files| files.spec.rerun.live = !files.spec.rerun.live),
+        ("address of the display", |files| files.spec.display.listen = [0, 0, 0, 0].into()),
+        ("bell", |files| files.spec.console.bell.push(BellOccasion::Offer)),
+        ("tracker", |files| files.spec.tracker.port += 1),
         ("theme", |files| files.spec.console.theme = ColourTheme::Light),
         ("who takes part", |files| files.spec.participant.kind = ParticipantKind::Keyboard),
     ];

@@ -128,7 +128,7 @@ fn what_happens_around_a_trial_keeps_its_order() {
     run.refuses(ProtocolEvent::CriterionWaived { reason: String::new() });
     let folder = run.close();
     assert!(verify(&folder).expect("readable").verified);
-    let made = recordings::of_plan(&out, "study").expect("readable");
+    let made = recordings::of_plan(&out, "study").expect("readable").0;
     assert!(matches!(&made[0].outcome, RecordingOutcome::Void { reason } if reason == "criterion not met"), "{made:?}");
     assert!(made[0].consent && made[0].instructed);
 }
@@ -233,7 +233,7 @@ fn wherever_a_recording_is_cut_it_is_open_verified_and_known() {
         // Between two lines, and within one.
         for bytes in [end, end + 9] {
             let recording = cut(&whole, &cuts, bytes);
-            let made = recordings::of_plan(&cuts, "study").expect("readable");
+            let made = recordings::of_plan(&cuts, "study").expect("readable").0;
             assert_eq!((made.len(), &made[0].outcome), (1, &RecordingOutcome::Open), "cut after {bytes} bytes");
             // To run it again each time would take long.
             if index % 40 == 0 {
@@ -243,13 +243,13 @@ fn wherever_a_recording_is_cut_it_is_open_verified_and_known() {
         }
     }
     let recording = cut(&whole, &cuts, text.len());
-    let made = recordings::of_plan(&cuts, "study").expect("readable");
+    let made = recordings::of_plan(&cuts, "study").expect("readable").0;
     assert_eq!(made[0].outcome, RecordingOutcome::Complete);
     assert!(verify(&recording).expect("readable").verified);
     // A recording that was killed before its header was there is none; nor is one of another plan, or a simulated one.
     cut(&whole, &cuts, 100);
-    assert_eq!(recordings::of_plan(&cuts, "study").expect("readable"), Vec::new());
-    assert_eq!(recordings::of_plan(whole.parent().expect("a folder"), "other").expect("readable"), Vec::new());
+    assert_eq!(recordings::of_plan(&cuts, "study").expect("readable").0, Vec::new());
+    assert_eq!(recordings::of_plan(whole.parent().expect("a folder"), "other").expect("readable").0, Vec::new());
     let progress = ParticipantProgress::from_recordings(&study, 0, &[]).expect("nothing recorded");
     assert_eq!(progress.next, NextRecording::Begin { slot: 0, attempt: 1 });
     check_damaged_headers(&text, &cuts);
@@ -262,7 +262,7 @@ fn check_damaged_headers(log: &[u8], out: &Path) {
         let damaged = out.join("damaged");
         fs::create_dir_all(&damaged).expect("a folder");
         fs::write(damaged.join(LOG_NAME), text).expect("written");
-        let found = recordings::of_plan(out, "study").map(|made| made.len());
+        let found = recordings::of_plan(out, "study").map(|(made, _)| made.len());
         fs::remove_dir_all(damaged).expect("removed");
         found.map_err(|error| error.to_string())
     };
@@ -291,13 +291,13 @@ fn a_trial_of_a_plan_that_the_wizard_ends_counts_and_one_that_is_left_stays_open
     let mut run = Run::new(&out, wanted(1, true));
     run.next_phase();
     assert_eq!(run.input(Event::TrialStarted), None);
-    let outcome = || recordings::of_plan(&out, "study").expect("readable")[0].outcome.clone();
+    let outcome = || recordings::of_plan(&out, "study").expect("readable").0[0].outcome.clone();
     assert_eq!(outcome(), RecordingOutcome::Running, "while it is written");
     let cut = folder("left-cut");
     let name = run.log.folder().file_name().expect("a name").to_owned();
     fs::create_dir_all(cut.join(&name)).expect("a folder");
     fs::copy(run.log.folder().join(LOG_NAME), cut.join(&name).join(LOG_NAME)).expect("copied");
-    assert_eq!(recordings::of_plan(&cut, "study").expect("readable")[0].outcome, RecordingOutcome::Open);
+    assert_eq!(recordings::of_plan(&cut, "study").expect("readable").0[0].outcome, RecordingOutcome::Open);
     assert!(!run.engine.session().is_step_done(), "left now, it can be continued");
     assert_eq!(run.input(Event::TrialEnded { reason: TrialEndReason::Wizard }), None);
     run.go_through();
@@ -310,6 +310,6 @@ fn a_trial_of_a_plan_that_the_wizard_ends_counts_and_one_that_is_left_stays_open
     assert_eq!(run.input(Event::TrialAborted { reason: "fire alarm".to_string() }), None);
     assert!(run.engine.session().is_step_done(), "left now, it is over");
     run.close();
-    let outcome = recordings::of_plan(&aborted, "study").expect("readable")[0].outcome.clone();
+    let outcome = recordings::of_plan(&aborted, "study").expect("readable").0[0].outcome.clone();
     assert_eq!(outcome, RecordingOutcome::Void { reason: "aborted (fire alarm)".to_string() });
 }

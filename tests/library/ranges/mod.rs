@@ -246,6 +246,13 @@ fn every_number_of_every_settings_file_has_a_range() {
     }
 }
 
+/// The table around a setting, and its name there: "participant.population" and "slip.median".
+fn in_table(path: &str) -> (&str, &str) {
+    let spread = path.strip_suffix(".median").or(path.strip_suffix(".sigma")).unwrap_or(path);
+    let end = spread.rfind('.').unwrap_or(0);
+    (&path[..end], path[end..].trim_start_matches('.'))
+}
+
 /// `docs/settings.md` has the table; where it does not, the test prints it.
 #[test]
 fn the_documentation_has_every_range() {
@@ -256,11 +263,22 @@ fn the_documentation_has_every_range() {
         ("Questionnaires", ranges::OF_QUESTIONNAIRES.to_vec()),
         ("Layouts", LAYOUT_RANGES.to_vec()),
     ] {
-        let mut table = "| setting | range |\n|---|---|\n".to_string();
-        for NumberRange { path, least, most, is_whole, unit, .. } in &ranges {
+        let mut table = "| table | settings | range |\n|---|---|---|\n".to_string();
+        let (around, own): (Vec<&str>, Vec<&str>) = ranges.iter().map(|range| in_table(range.path)).unzip();
+        let told = |NumberRange { least, most, is_whole, unit, .. }: &NumberRange| {
             let whole = if *is_whole { ", whole" } else { "" };
-            table += format!("| `{path}` | {least} to {most} {unit}").trim_end();
-            table += &format!("{whole} |\n");
+            format!("{}{whole}", format!("{least} to {most} {unit}").trim_end())
+        };
+        let all: Vec<usize> = (0..ranges.len()).collect();
+        // Settings that follow one another in one table and have one range share a row.
+        for row in all.chunk_by(|&one, &next| around[one] == around[next] && told(&ranges[one]) == told(&ranges[next]))
+        {
+            let names: Vec<String> = row.iter().map(|&at| format!("`{}`", own[at])).collect();
+            // The table's name stands in the first of its rows.
+            let is_first = row[0] == 0 || around[row[0] - 1] != around[row[0]];
+            let around = Some(around[row[0]]).filter(|around| is_first && !around.is_empty());
+            let around = around.map_or(String::new(), |around| format!(" `{around}`"));
+            table += &format!("|{around} | {} | {} |\n", names.join(" "), told(&ranges[row[0]]));
         }
         let section = page.split("\n## ").find(|section| section.starts_with(title)).unwrap_or_default();
         if !section.contains(&table) {

@@ -101,7 +101,9 @@ fn a_blinded_replay_shows_no_signal_and_the_same_kitchen() {
     let is_signal = |film: &SeekableReplay| {
         let signals = film.session.timeline.iter();
         signals
-            .filter(|entry| matches!(entry.what, TimelineEvent::Signal { .. } | TimelineEvent::SignalEnded(_)))
+            .filter(|entry| {
+                matches!(entry.what, TimelineEvent::Noted(Event::SignalShown { .. } | Event::SignalEnded { .. }))
+            })
             .count()
     };
     let (_, events) = open.length();

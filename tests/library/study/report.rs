@@ -20,7 +20,7 @@ use tomcom_study::prevention::PreventionCounts;
 use tomcom_study::report;
 use tomcom_study::robot_tally::{ArmSafetySummary, RobotEventTally};
 use tomcom_study::roc::ConceptPreventionCounts;
-use tomcom_study::trial_statistics::{DetailTotals, QuestionnaireAnswer, TrialDetails, TrialStatistics};
+use tomcom_study::trial_statistics::{AskedItem, DetailTotals, QuestionnaireAnswer, TrialDetails, TrialStatistics};
 
 use super::{at, near, summary, trial, trials, with_details};
 use crate::support::*;
@@ -32,12 +32,14 @@ fn the_report_says_who_took_part_and_needs_nothing_beside_it() {
     for (index, answer) in [Some(1), Some(3), None].into_iter().enumerate() {
         let assisted = trials.iter_mut().filter(|trial| trial.is_assisted() && trial.counts()).nth(index);
         assisted.expect("a trial").answers.push(QuestionnaireAnswer {
-            questionnaire: "acceptance".to_string(),
-            item: "annoyed".to_string(),
-            text: "The signals annoyed me.".to_string(),
-            about: Some("acceptance".to_string()),
-            reversed: true,
-            kind: QuestionnaireItemKind::Scale,
+            asked: AskedItem {
+                questionnaire: "acceptance".to_string(),
+                item: "annoyed".to_string(),
+                text: "The signals annoyed me.".to_string(),
+                about: Some("acceptance".to_string()),
+                reversed: true,
+                kind: QuestionnaireItemKind::Scale,
+            },
             answer: answer.map(AnswerValue::from),
             points: Some(7),
             options: Vec::new(),

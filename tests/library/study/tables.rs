@@ -18,7 +18,7 @@ use tomcom_study::tables::participants::{
     AnswerRow, TutorialAnswerCollector, TutorialQuestionRow, TutorialSummary, answers as answers_of, participants,
 };
 use tomcom_study::tables::trials::{HEADLINE, MEASURES};
-use tomcom_study::trial_statistics::{QuestionnaireAnswer, TrialDetails, TrialStatistics};
+use tomcom_study::trial_statistics::{AskedItem, QuestionnaireAnswer, TrialDetails, TrialStatistics};
 
 use super::probes::one_right_answer;
 use crate::support::*;
@@ -221,12 +221,14 @@ fn fields(folder: &Path, table: CsvTable, column: &str) -> Vec<String> {
 /// No spreadsheet computes what a participant typed, and numbers stay numbers.
 fn check_guarded_texts(folder: &Path, export: &AnalysisFolder) {
     let answer = |answer: AnswerValue| QuestionnaireAnswer {
-        questionnaire: "sheet".to_string(),
-        item: "words".to_string(),
-        text: "What did you think?".to_string(),
-        about: None,
-        reversed: false,
-        kind: QuestionnaireItemKind::Text,
+        asked: AskedItem {
+            questionnaire: "sheet".to_string(),
+            item: "words".to_string(),
+            text: "What did you think?".to_string(),
+            about: None,
+            reversed: false,
+            kind: QuestionnaireItemKind::Text,
+        },
         answer: Some(answer),
         points: None,
         options: Vec::new(),

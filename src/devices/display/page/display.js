@@ -74,7 +74,7 @@
     }
   }
 
-  /** What is seen now. Probe or trial had so many seconds left at a time of the program's clock, which a new page learns a moment later. */
+  /** What is seen now. The seconds that probe or trial had left at a time of the program's clock, which a new page learns a moment later. */
   function see({ sight, at: toldAt, left_s }) {
     const before = Stage.shown(), count = (one) => (one && one.presses[0] ? one.presses[0].number : 0);
     const isAnswer = before && count(sight) > count(before);

@@ -11,7 +11,7 @@ const Robot = (() => {
   const FOLLOWS_MS = 40;
   let made = null, stands = [], holds = "", told = null, drawn = null, ticked = 0;
 
-  /** The rectangle of so many em around a point. */
+  /** The rectangle of this size in em around a point. */
   const around = ([x, y], size, [wide, high]) => [x - (size * wide) / 2, y - (size * high) / 2, size * wide, size * high];
   const overlaps = ([ax, ay, aw, ah], [bx, by, bw, bh]) => ax < bx + bw && bx < ax + aw && ay < by + bh && by < ay + ah;
   const isInside = ([ax, ay, aw, ah], [bx, by, bw, bh]) => ax >= bx && ay >= by && ax + aw <= bx + bw && ay + ah <= by + bh;

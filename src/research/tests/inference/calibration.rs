@@ -13,7 +13,7 @@ use tomcom_research::reference::person::{draw, pick};
 
 use super::particles::ParticleFilter;
 use super::tiny_model;
-use super::world::{Human, World, live};
+use super::world::{Human, KitchenAtWork, live};
 use crate::files::load;
 
 const HUMANS: u64 = 160;
@@ -21,7 +21,7 @@ const PRESSES: usize = 8;
 const PARTICLES: usize = 400;
 /// Humans in the large kitchens.
 const LOOKED_AT: u64 = 100;
-/// Ranks are counted in so many bins; chi square with 9 degrees of freedom is above 27.88 once in a thousand.
+/// Number of bins of ranks; chi square with 9 degrees of freedom is above 27.88 once in a thousand.
 const BINS: usize = 10;
 const CHI_SQUARE: f64 = 27.88;
 
@@ -54,7 +54,7 @@ fn the_unprojected_posterior_is_calibrated_and_what_the_projection_adds_is_told(
     let aspects = kitchen.aspects.len();
     let (mut kept, mut projected) = (vec![Vec::new(); aspects], vec![Vec::new(); aspects]);
     for index in 0..HUMANS {
-        let mut world = World::new(kitchen.clone(), cost.clone(), 15.0, None, 11, index);
+        let mut world = KitchenAtWork::new(kitchen.clone(), cost.clone(), 15.0, None, 11, index);
         let mut human = Human::new(&kitchen, &model, 11, index);
         let mut particles = ParticleFilter::new(&kitchen, &model, PARTICLES, 11, index);
         let mut fast = BeliefFilter::new(kitchen.clone(), fast_model.clone(), index);
@@ -92,7 +92,7 @@ fn what_is_called_likely_is_held_as_often() {
         let mut cost = CostToGo::new(kitchen.clone());
         let (mut named, mut held_most) = (Vec::new(), Vec::new());
         for index in 0..LOOKED_AT {
-            let mut world = World::new(kitchen.clone(), cost, 15.0, None, 5, index);
+            let mut world = KitchenAtWork::new(kitchen.clone(), cost, 15.0, None, 5, index);
             let mut human = Human::new(&kitchen, &model, 5, index);
             let mut fast = BeliefFilter::new(kitchen.clone(), model.clone(), index);
             live(&mut world, &mut human, PRESSES, |observation, _, cost| fast.observe(observation, cost));

@@ -13,7 +13,7 @@ use tomcom_research::reference::ReferenceFilter;
 use super::grid::{GridFilter, quadrature};
 use super::particles::ParticleFilter;
 use super::tiny_model;
-use super::world::{Human, World, distance, live};
+use super::world::{Human, KitchenAtWork, distance, live};
 use crate::files::load;
 
 /// Events that are not gaze samples.
@@ -55,7 +55,7 @@ fn the_estimate_is_close_to_exact_assumed_density_filtering() {
         let mut filters = [usual.clone(), fine.clone()].map(|model| BeliefFilter::new(kitchen.clone(), model, seed));
         let mut reference = ReferenceFilter::new(kitchen.clone(), plain.clone(), seed);
         let mut particles = ParticleFilter::new(&kitchen, &model, 8192, seed, 0);
-        let mut world = World::new(kitchen.clone(), CostToGo::new(kitchen.clone()), 15.0, None, seed, 0);
+        let mut world = KitchenAtWork::new(kitchen.clone(), CostToGo::new(kitchen.clone()), 15.0, None, seed, 0);
         let mut human = Human::new(&kitchen, &model, seed, 0);
         let mut apart = [0.0; 4];
         let mut events = 0;

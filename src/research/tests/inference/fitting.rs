@@ -10,7 +10,7 @@ use tomcom_core::mind::observation::Observation;
 use tomcom_study::analysis::fitting::{FitSettings, FitSummary, describe};
 use tomcom_study::fit::{FitTrials, fit};
 
-use super::world::{Human, World, live};
+use super::world::{Human, KitchenAtWork, live};
 use crate::files::kitchen;
 
 /// How an experiment is done.
@@ -30,7 +30,7 @@ fn trials(kitchen: &Arc<Kitchen>, model: &HumanModel, experiment: &Experiment) -
     let mut observations = Vec::new();
     let mut cost = CostToGo::new(kitchen.clone());
     for index in 0..humans {
-        let mut world = World::new(kitchen.clone(), cost, gaze_hz, signal_s, seed, index);
+        let mut world = KitchenAtWork::new(kitchen.clone(), cost, gaze_hz, signal_s, seed, index);
         let mut human = Human::new(kitchen, model, seed, index);
         let mut of_trial: Vec<Observation> = Vec::new();
         live(&mut world, &mut human, presses, |observation, _, _| of_trial.push(*observation));
@@ -40,7 +40,7 @@ fn trials(kitchen: &Arc<Kitchen>, model: &HumanModel, experiment: &Experiment) -
     FitTrials { kitchen: kitchen.clone(), model: model.clone(), others: Vec::new(), observations }
 }
 
-/// Fits, tells, and demands that each parameter is within so many standard errors of the truth, on the scale of the fit.
+/// Fits, tells, and demands that each parameter is within this number of standard errors of the truth, on the scale of the fit.
 fn check(found: &FitSummary, plan: &FitSettings, truth: &HumanModel, errors: f64) {
     println!("{}", describe(found));
     assert!(found.converged, "{found:?}");

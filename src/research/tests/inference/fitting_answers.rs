@@ -15,7 +15,7 @@ use tomcom_core::mind::observation::{Observation, ObservedEvidence};
 use tomcom_study::analysis::fitting::{FitSettings, describe};
 use tomcom_study::fit::{FitTrials, fit};
 
-use super::world::{Human, World, live};
+use super::world::{Human, KitchenAtWork, live};
 use crate::files::kitchen;
 
 fn at(seconds: f64) -> SessionTime {
@@ -65,7 +65,7 @@ fn probed(people: u64, presses: usize) -> (FitTrials, HumanModel) {
     let places = kitchen.locations.len();
     let (mut cost, mut observations) = (CostToGo::new(kitchen.clone()), Vec::new());
     for index in 0..people {
-        let mut world = World::new(kitchen.clone(), cost, 15.0, Some(10.0), 31, index);
+        let mut world = KitchenAtWork::new(kitchen.clone(), cost, 15.0, Some(10.0), 31, index);
         let mut human = Human::new(&kitchen, &truth, 31, index);
         let mut random = stream(31, "questions", index);
         let mut trial = FitObservations { seed: index, ..FitObservations::default() };

@@ -20,9 +20,9 @@ use tomcom_research::reference::person::Particle;
 
 use super::looks_at_nothing;
 
-/// The grid has at most so many nodes, …
+/// Largest number of nodes of the grid, …
 const MOST_NODES: usize = 40_000;
-/// … between so many along each open share.
+/// … between these numbers along each open share.
 const ALONG: [usize; 2] = [4, 10];
 /// A share is rare if the lesser of its two nodes weighs less.
 const RARE: f64 = 0.1;

@@ -10,7 +10,7 @@ use tomcom_session::engine::SessionEngine;
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::{Event, Session, SessionSpec};
 
-/// All observations of an unassisted trial, until so many presses of both agents.
+/// All observations of an unassisted trial, until this number of presses of both agents.
 pub fn recorded(kitchen: &Arc<Kitchen>, seed: u64, presses: u32) -> Vec<Observation> {
     let text = format!("layout = \"\"\nseed = {seed}\n[trial]\ncondition = \"none\"\npresses = {presses}\n");
     let mut spec: SessionSpec = toml::from_str(&text).expect("settings of a session");

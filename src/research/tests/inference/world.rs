@@ -22,7 +22,7 @@ const FIXATION_S: [f64; 2] = [0.2, 0.6];
 const RECIPES: f64 = 0.6;
 
 /// A kitchen at work.
-pub struct World {
+pub struct KitchenAtWork {
     pub kitchen: Arc<Kitchen>,
     pub cost: CostToGo,
     chance: Stream,
@@ -41,7 +41,7 @@ pub struct World {
     changes: Vec<(f64, LocationId, OrderContent)>,
 }
 
-impl World {
+impl KitchenAtWork {
     pub fn new(
         kitchen: Arc<Kitchen>,
         cost: CostToGo,
@@ -49,7 +49,7 @@ impl World {
         signal_s: Option<f64>,
         seed: u64,
         index: u64,
-    ) -> World {
+    ) -> KitchenAtWork {
         let mut chance = stream(seed, "world", index);
         let shows = kitchen.orders.iter().enumerate().map(|(at, &order)| {
             let dish = DishId(chance.random_range(0..kitchen.dishes.len()) as u8);
@@ -59,7 +59,19 @@ impl World {
         let state = kitchen.empty_state();
         let (fixation, press_at) = ((0.0, [0.5, 0.5]), [2.0, 3.0]);
         let (gaze_at, signal_at) = (0.05, signal_s.map_or(f64::INFINITY, |_| 1.0));
-        World { kitchen, cost, chance, gaze_hz, state, gaze_at, fixation, press_at, signal_s, signal_at, changes }
+        KitchenAtWork {
+            kitchen,
+            cost,
+            chance,
+            gaze_hz,
+            state,
+            gaze_at,
+            fixation,
+            press_at,
+            signal_s,
+            signal_at,
+            changes,
+        }
     }
 
     /// The beginning of a trial.
@@ -183,9 +195,9 @@ impl Human {
     }
 }
 
-/// Lives through a trial until so many presses of the human. `each` sees every observation before the human makes it.
+/// Lives through a trial of this number of the human's presses. `each` sees every observation before the human makes it.
 pub fn live(
-    world: &mut World,
+    world: &mut KitchenAtWork,
     human: &mut Human,
     presses: usize,
     mut each: impl FnMut(&Observation, &Human, &mut CostToGo),

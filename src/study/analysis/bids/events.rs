@@ -9,7 +9,7 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::offer::OfferedCommunication;
 use tomcom_core::gaze::device_clock::StampFault;
-use tomcom_session::event::Event;
+use tomcom_session::event::{Event, MEANINGS};
 use tomcom_session::gaze_check::GazeCheckEvent;
 use tomcom_session::probes::{ProbeEvent, ProbeSubject};
 use tomcom_session::protocol::ProtocolEvent;
@@ -39,7 +39,7 @@ pub(super) fn event_columns(with_words: bool) -> Vec<TableColumn<EventRow>> {
         "duration", "s", "Until what the event began is over; 0 for what happens at a moment; n/a where the \
             recording ends before"
             => row.duration.map(|time| if time == SessionTime::ZERO { "0".to_string() } else { seconds(time) });
-        "trial_type", LEVELS, "Kind of the event, as in the log" => row.kind;
+        "trial_type", MEANINGS, "Kind of the event, as in the log" => row.kind;
         "seq", "", "Number of the event in the log, from 0" => row.seq;
         "trial_time", "s", "The trial's clock, which stands still in pauses; n/a before and after the trial"
             => row.trial_time.map(seconds);
@@ -370,61 +370,3 @@ fn tag(event: &impl Serialize, key: &str) -> String {
     let record = serde_json::to_value(event).unwrap_or_default();
     record.get(key).and_then(|value| value.as_str()).unwrap_or_default().to_string()
 }
-
-/// Kinds of events that have a row, as the log names them. Samples of gaze and arm have tables of their own.
-pub const LEVELS: Levels = &[
-    ("advised", "The assistant computed a recommendation; seen only if an offer follows"),
-    (
-        "belief_estimated",
-        "The participant's belief before a press was estimated; the probabilities stand in the table of beliefs",
-    ),
-    ("calibration", "A step of the gaze accuracy check"),
-    ("clock_jumped", "The wall clock moved against session time: the computer stood still, or its clock was set"),
-    ("display", "A report of the participant's display"),
-    ("focus_lost", "The wizard's terminal lost the keyboard"),
-    ("focus_regained", "The wizard's terminal has the keyboard again"),
-    ("human_waits", "The participant has not pressed for unusually long by its own intervals"),
-    ("kitchen_corrected", "The wizard corrected what the program thought of a place"),
-    ("marker", "The wizard marked this moment"),
-    ("marker_worded", "The wizard's words about a moment marked before"),
-    ("offer_closed", "An offer to the wizard closed"),
-    ("offer_opened", "A recommendation was offered to the wizard"),
-    ("order_cleared", "A served order disappeared"),
-    ("order_shown", "An order appeared"),
-    (
-        "participant_believes",
-        "What a simulated participant believed before its press; the probabilities stand in the table of beliefs",
-    ),
-    ("preflight", "The checks before the trial"),
-    ("press", "The participant or the robot pressed a button"),
-    ("probe", "A freeze probe: the task stands still, and the participant is asked what it believes"),
-    ("protocol", "A step of the study around the trial: consent, phases, tutorial, questionnaires"),
-    ("robot_aborts", "The robot gave up its press"),
-    ("robot_driven", "Somebody chose the robot's next press"),
-    ("robot_held", "Somebody holds the robot before its next press"),
-    (
-        "robot_idles",
-        "The robot has nothing useful to do: there is no order, or it waits for a press of the participant",
-    ),
-    ("robot_intends", "The robot sets out for a button"),
-    ("robot_released", "The held robot goes on"),
-    ("robot_resumed", "The wizard lets the stopped robot go on"),
-    ("robot_safety", "The safety mode of the arm changed"),
-    ("robot_skipped", "Somebody skipped the robot's press"),
-    ("robot_stopped", "The wizard stopped the robot"),
-    ("robot_touched", "Somebody touched the arm"),
-    ("screen", "What the wizard sees changed"),
-    ("session_ended", "The recording is complete"),
-    ("signal_drawn", "The first frame with a signal was drawn at the console"),
-    ("signal_ended", "A signal disappeared"),
-    ("signal_shown", "A signal was shown to the participant"),
-    ("tracker", "An event of the eye tracker"),
-    ("trial_aborted", "The trial was aborted and does not count"),
-    ("trial_ended", "The trial is over"),
-    ("trial_excluded", "The trial is left out of the analysis"),
-    ("trial_included", "The trial counts again"),
-    ("trial_paused", "The trial's clock stands still"),
-    ("trial_resumed", "The trial's clock goes on"),
-    ("trial_started", "The trial starts with an empty kitchen"),
-    ("unblinded", "The wizard sees from now on what concepts would send"),
-];

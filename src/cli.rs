@@ -7,6 +7,7 @@ mod data;
 mod estimates;
 mod exports;
 mod failure;
+mod lab;
 mod list;
 #[cfg(feature = "mcap")]
 mod mcap_exports;
@@ -73,6 +74,7 @@ pub fn main() -> ExitCode {
         flags: cli.operate,
     }));
     let done = match command {
+        CliCommand::New(args) => lab::new(&args),
         CliCommand::Operate(args) => operate::operate(&args),
         CliCommand::Compare(args) => wizard::compare(&args),
         CliCommand::Tutorial(args) => tutorial_alone::tutorial(&args),

@@ -8,6 +8,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use super::choices::{ArmArg, SimulatedCondition, concept_parser};
 use super::data::{CodesArgs, ForgetArgs};
 use super::exports::ExportArgs;
+use super::lab::NewArgs;
 use super::list::ListArgs;
 use super::operate::{OperateArgs, OperateFlags};
 use super::output::OutputFormat;
@@ -34,6 +35,7 @@ pub(super) struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum CliCommand {
+    New(NewArgs),
     Operate(OperateArgs),
     Compare(CompareArgs),
     Tutorial(TutorialArgs),

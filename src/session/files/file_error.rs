@@ -10,6 +10,7 @@ use miette::{Diagnostic, NamedSource, SourceSpan};
 use toml::de::{DeTable, DeValue};
 
 use crate::features::{Feature, MissingFeature};
+use crate::files::carried;
 use tomcom_core::base::text::{printable, printable_lines};
 
 pub type FileResult<T> = Result<T, FileError>;
@@ -163,7 +164,13 @@ pub fn read_regular(path: &Path) -> io::Result<String> {
 
 /// Reads the text of a file that people write, as [`read_regular`] does.
 pub fn read_text(path: &Path) -> FileResult<String> {
-    read_regular(path).map_err(|reason| FileError::unreadable(path, reason, "the path of a readable text file (UTF-8)"))
+    read_regular(path).map_err(|reason| {
+        let remedy = match carried::text(path).filter(|_| reason.kind() == io::ErrorKind::NotFound) {
+            Some(_) => "tomcom new DIR writes a folder with this file; cd DIR, and again",
+            None => "the path of a readable text file (UTF-8)",
+        };
+        FileError::unreadable(path, reason, remedy)
+    })
 }
 
 /// Byte range of the `nth` setting (from 0) with this dotted path in a TOML text, outermost table first:

@@ -1,6 +1,7 @@
 //! Reads session, layout and recipe files, and the files that they name. Every error names the file, the line, what
 //! was found and what would be valid.
 
+pub mod carried;
 pub mod file_error;
 pub mod overwrite;
 pub mod parse;
@@ -183,12 +184,12 @@ pub fn read_human_model(path: &Path) -> FileResult<HumanModel> {
     Ok(model)
 }
 
-/// The default session with its kitchen; both are part of the program, so that it runs without any file.
+/// The default session with its kitchen, as the program carries them.
 pub fn built_in_session() -> FileResult<SessionSetup> {
-    let spec: SessionSpec = parse(Path::new("sessions/default.toml"), include_str!("../../../sessions/default.toml"))?;
-    let layout = (Path::new(&spec.layout), include_str!("../../../layouts/sushi.toml").to_string());
-    let recipes = (Path::new("../recipes/sushi.toml"), include_str!("../../../recipes/sushi.toml").to_string());
-    let kitchen = compile_kitchen(layout, recipes)?;
+    let text = |path| carried::text(Path::new(path)).unwrap_or_default().to_string();
+    let spec: SessionSpec = parse(Path::new("sessions/default.toml"), &text("sessions/default.toml"))?;
+    let layout = (Path::new(&spec.layout), text("layouts/sushi.toml"));
+    let kitchen = compile_kitchen(layout, (Path::new("../recipes/sushi.toml"), text("recipes/sushi.toml")))?;
     Ok(SessionSetup { spec, kitchen, keys: None, questionnaires: Vec::new(), tutorial: None })
 }
 

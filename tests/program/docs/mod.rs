@@ -42,18 +42,11 @@ fn pages() -> Vec<Page> {
     top.iter().filter(|path| path.exists()).chain(&paths).map(|path| Page::read(path)).collect()
 }
 
-/// A folder of this kind with the project's own settings, in which the blocks of a page find what they name.
+/// A lab's folder, in which the blocks of a page find what they name.
 fn scratch(kind: &str, page: &Page) -> PathBuf {
     let folder = program::folder(&format!("{kind}/{}", page.path.with_extension("").display()));
-    for from in ["layouts", "recipes", "sessions", "sessions/questionnaires", "sessions/tutorials", "sessions/people"] {
-        fs::create_dir_all(folder.join(from)).expect("a folder");
-        for entry in fs::read_dir(from).expect("the project's settings") {
-            let path = entry.expect("an entry").path();
-            if path.extension().is_some_and(|kind| kind == "toml") {
-                fs::copy(&path, folder.join(&path)).expect("a file can be copied");
-            }
-        }
-    }
+    let done = Command::new(TOMCOM).arg("new").arg(&folder).stdout(Stdio::null()).status();
+    assert!(done.expect("tomcom runs").success());
     folder
 }
 

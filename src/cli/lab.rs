@@ -1,0 +1,55 @@
+//! The command `tomcom new`: a lab's folder.
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::failure::Failure;
+use super::output::put;
+use tomcom_core::base::text::count;
+use tomcom_session::files::carried;
+
+/// Writes a folder to begin with: sessions, kitchens, questionnaires, tutorials.
+///
+/// The files are those that the program carries, to be changed as the lab needs them. Nothing is overwritten: files that
+/// are there already stay as they are.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tomcom new lab\nMore: docs/first-study.md")]
+pub(super) struct NewArgs {
+    /// The folder, which need not exist yet.
+    pub(super) folder: PathBuf,
+}
+
+/// What stands in the folder beside what the program carries.
+const README: (&str, &str) = ("README.md", include_str!("lab.md"));
+
+pub(super) fn new(args: &NewArgs) -> Result<(), Failure> {
+    let folder = &args.folder;
+    let (mut written, mut there) = (0, Vec::new());
+    for (path, text) in [README].iter().chain(carried::FILES) {
+        let path = folder.join(path);
+        match write_new(&path, text) {
+            Ok(()) => written += 1,
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => there.push(path),
+            Err(error) => {
+                let help = "a folder in which files can be written";
+                let found = miette::miette!(help = help, "{}: cannot be written: {error}", path.display());
+                return Err(Failure::Failed(found));
+            }
+        }
+    }
+    let mut told = format!("{}: {} written\n", folder.display(), count(written, "file", "files"));
+    for path in there {
+        told += &format!("{} was there, and stays as it is\n", path.display());
+    }
+    told += &format!("Next: cd {}, and tomcom. README.md says what else.\n", folder.display());
+    Ok(put(&told)?)
+}
+
+/// Fails with `AlreadyExists` where there is a file.
+fn write_new(path: &Path, text: &str) -> io::Result<()> {
+    path.parent().map_or(Ok(()), fs::create_dir_all)?;
+    fs::OpenOptions::new().write(true).create_new(true).open(path)?.write_all(text.as_bytes())
+}

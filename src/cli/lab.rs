@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::failure::Failure;
-use super::output::put;
+use super::output::{put, put_aside};
 use tomcom_core::base::text::count;
 use tomcom_session::files::carried;
 
@@ -27,7 +27,7 @@ const README: (&str, &str) = ("README.md", include_str!("lab.md"));
 
 pub(super) fn new(args: &NewArgs) -> Result<(), Failure> {
     let folder = &args.folder;
-    let (mut written, mut there) = (0, Vec::new());
+    let (mut written, mut there) = (0_u64, Vec::new());
     for (path, text) in [README].iter().chain(carried::FILES) {
         let path = folder.join(path);
         match write_new(&path, text) {
@@ -46,6 +46,19 @@ pub(super) fn new(args: &NewArgs) -> Result<(), Failure> {
     }
     told += &format!("Next: cd {}, and tomcom. README.md says what else.\n", folder.display());
     Ok(put(&told)?)
+}
+
+/// Says, where these settings are those that the program carries, that they are, and where recordings go.
+pub(super) fn tell_carried(settings: &Path, out: Option<&Path>) {
+    if carried::instead_of(settings).is_none() {
+        return;
+    }
+    let place = |out: &Path| std::path::absolute(out).unwrap_or(out.to_path_buf()).display().to_string();
+    let recordings = out.map_or(String::new(), |out| format!("Recordings go to {}. ", place(out)));
+    put_aside(&format!(
+        "No lab's folder is here: {} is the one that tomcom carries. {recordings}tomcom new DIR writes a folder to begin with.\n",
+        settings.display()
+    ));
 }
 
 /// Fails with `AlreadyExists` where there is a file.

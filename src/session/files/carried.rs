@@ -1,6 +1,9 @@
 //! The files that the program carries, so that it runs without a checkout, and `tomcom new` writes a lab's folder.
 
-use std::path::Path;
+use std::io;
+use std::path::{Component, Path, PathBuf};
+
+use crate::files::file_error::{FileError, FileResult, read_regular};
 
 macro_rules! carried {
     ($($path:literal)*) => {
@@ -37,7 +40,45 @@ carried! {
     "sessions/tutorials/sushi.toml"
 }
 
-/// The text of a carried file; `None` if there is none with this path.
-pub(crate) fn text(path: &Path) -> Option<&'static str> {
-    FILES.iter().find(|(carried, _)| Path::new(carried) == path).map(|(_, text)| *text)
+/// A folder that every lab's folder has.
+const KITCHENS: &str = "layouts";
+/// What to do about a carried file that is missed.
+pub const REMEDY: &str =
+    "tomcom new DIR writes a folder with this file, and overwrites nothing; then cd DIR, and again";
+
+/// Whether the program carries a file with this path.
+pub fn has(path: &Path) -> bool {
+    text(path).is_some()
+}
+
+/// The carried text for a path at which there is no file. `None` in a lab's folder: its files are its own, and one that is
+/// missing there is an error.
+pub fn instead_of(path: &Path) -> Option<&'static str> {
+    text(path).filter(|_| !path.exists() && !Path::new(KITCHENS).exists())
+}
+
+/// Refuses a file that would be read from what the program carries: who runs a session with a person and names its file
+/// means that file, and may be in the wrong folder.
+pub fn refuse(path: &Path) -> FileResult<()> {
+    match instead_of(path) {
+        Some(_) => Err(FileError::unreadable(path, io::ErrorKind::NotFound.into(), REMEDY)),
+        None => Ok(()),
+    }
+}
+
+/// Reads the text of a settings file; outside of a lab's folder, of a carried one.
+pub(super) fn read(path: &Path) -> io::Result<String> {
+    instead_of(path).map_or_else(|| read_regular(path), |text| Ok(text.to_string()))
+}
+
+fn text(path: &Path) -> Option<&'static str> {
+    let mut plain = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::CurDir => {}
+            Component::ParentDir => plain.pop().then_some(())?,
+            part => plain.push(part),
+        }
+    }
+    FILES.iter().find(|(carried, _)| Path::new(carried) == plain).map(|(_, text)| *text)
 }

@@ -162,12 +162,12 @@ pub fn read_regular(path: &Path) -> io::Result<String> {
     String::from_utf8(bytes).map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error.utf8_error()))
 }
 
-/// Reads the text of a file that people write, as [`read_regular`] does.
+/// Reads the text of a file that people write, as [`read_regular`] does, or of one that the program carries.
 pub fn read_text(path: &Path) -> FileResult<String> {
-    read_regular(path).map_err(|reason| {
-        let remedy = match carried::text(path).filter(|_| reason.kind() == io::ErrorKind::NotFound) {
-            Some(_) => "tomcom new DIR writes a folder with this file; cd DIR, and again",
-            None => "the path of a readable text file (UTF-8)",
+    carried::read(path).map_err(|reason| {
+        let remedy = match reason.kind() == io::ErrorKind::NotFound && carried::has(path) {
+            true => carried::REMEDY,
+            false => "the path of a readable text file (UTF-8)",
         };
         FileError::unreadable(path, reason, remedy)
     })

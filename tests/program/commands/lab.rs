@@ -13,7 +13,8 @@ use crate::program::{self, TOMCOM, done};
 #[test]
 fn the_program_carries_every_settings_file_of_the_project() {
     let mut there = BTreeSet::new();
-    for folder in ["layouts", "recipes", "sessions", "sessions/people", "sessions/questionnaires", "sessions/tutorials"] {
+    for folder in ["layouts", "recipes", "sessions", "sessions/people", "sessions/questionnaires", "sessions/tutorials"]
+    {
         let files = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
         there.extend(files.filter(|path| path.extension().is_some_and(|kind| kind == "toml")));
     }

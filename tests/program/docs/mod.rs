@@ -38,7 +38,8 @@ fn pages() -> Vec<Page> {
     let docs = fs::read_dir("docs").expect("docs").map(|entry| entry.expect("an entry").path());
     let mut paths: Vec<PathBuf> = docs.filter(|path| path.extension().is_some_and(|kind| kind == "md")).collect();
     paths.sort();
-    let top = ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md"].map(PathBuf::from);
+    let top = ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md", "SUPPORT.md", "CODE_OF_CONDUCT.md"]
+        .map(PathBuf::from);
     top.iter().filter(|path| path.exists()).chain(&paths).map(|path| Page::read(path)).collect()
 }
 
@@ -196,10 +197,48 @@ fn links_and_paths_lead_somewhere_and_the_index_knows_every_page() {
             assert!(is_there, "{}: {path} is not there", page.at(*line));
         }
     }
-    let index = Page::read(Path::new("docs/index.md"));
-    for page in pages.iter().filter(|page| page.path.starts_with("docs") && page.path != index.path) {
-        let name = page.path.file_name().unwrap_or_default().to_string_lossy();
-        assert!(index.links.iter().any(|link| link.target == name), "docs/index.md does not name {name}");
+    for index in ["docs/index.md", "docs/SUMMARY.md"] {
+        let index = Page::read(Path::new(index));
+        for page in of_the_manual(&pages).filter(|page| page.path != Path::new("docs/index.md")) {
+            let name = page.path.file_name().unwrap_or_default().to_string_lossy();
+            let is_named = index.links.iter().any(|link| link.target == name);
+            assert!(is_named, "{} does not name {name}", index.path.display());
+        }
+    }
+}
+
+/// The pages of the manual, without its table of contents.
+fn of_the_manual(pages: &[Page]) -> impl Iterator<Item = &Page> {
+    pages.iter().filter(|page| page.path.starts_with("docs") && page.path != Path::new("docs/SUMMARY.md"))
+}
+
+#[test]
+fn a_page_begins_with_what_it_is_for_and_for_whom() {
+    for page in of_the_manual(&pages()) {
+        let text = fs::read_to_string(&page.path).expect("a page");
+        let mut lines = text.lines().filter(|line| !line.is_empty());
+        let place = page.path.display();
+        assert!(lines.next().is_some_and(|title| title.starts_with("# ")), "{place} begins with no title");
+        let second = lines.next().unwrap_or_default();
+        assert!(second.starts_with("For "), "{place} does not begin with whom it is for: {second}");
+    }
+}
+
+/// The Journal of Open Source Software asks for these sections, and for at most 1,000 words.
+#[test]
+fn the_paper_has_its_sections_and_no_more_words_than_the_journal_takes() {
+    let text = fs::read_to_string("docs/paper/paper.md").expect("the paper");
+    let body = text.splitn(3, "---\n").nth(2).expect("what follows the front matter");
+    let sections =
+        ["Summary", "Statement of need", "State of the field", "Software design", "Research impact statement"];
+    let found: Vec<&str> = body.lines().filter_map(|line| line.strip_prefix("# ")).collect();
+    assert_eq!(found, [&sections[..], &["AI usage disclosure", "References"]].concat());
+    let words = body.split_whitespace().count();
+    assert!(words <= 1000, "{words} words");
+    let keys = body.split('@').skip(1).filter_map(|rest| rest.split(|c: char| !c.is_alphanumeric()).next());
+    let sources = fs::read_to_string("docs/paper/paper.bib").expect("the sources");
+    for key in keys {
+        assert!(sources.contains(&format!("{{{key},")), "{key} is not among the sources");
     }
 }
 

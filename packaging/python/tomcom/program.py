@@ -33,7 +33,7 @@ def program() -> Path:
 
 def run(*arguments: PathLike) -> str:
     """Runs a command, such as `run("kitchen", "layouts/sushi.toml")`, and returns what it printed."""
-    done = subprocess.run([program(), *map(os.fspath, arguments)], capture_output=True, text=True, check=False)
+    done = subprocess.run([str(program()), *[os.fspath(argument) for argument in arguments]], capture_output=True, text=True, check=False)
     if done.returncode != 0:
         raise ProgramFailed((done.stderr or done.stdout).strip())
     return done.stdout

@@ -204,12 +204,12 @@ class Recording:
 
     @cached_property
     def probes(self) -> pandas.DataFrame:
-        """Questions of freeze probes, with the answers; no answer: the participant does not know, or did not answer
-        (`skipped`)."""
+        """Questions of freeze probes, with the answers. No answer: the participant does not know; no `answered_s`: not
+        answered in time, or `skipped` by the wizard, for that reason."""
         questions: dict[tuple[int, int], Event] = {}
         begun: dict[int, list[Event]] = {}
         for event in self.log("probe"):
-            probe, did = event.get("probe"), event["did"]
+            probe, did = event.get("probe", 0), event["did"]
             if did == "begun":
                 begun[probe] = event["questions"]
             elif did == "asked":
@@ -219,13 +219,14 @@ class Recording:
                     "seq": event["seq"], "t_ns": event["t_ns"], "probe": probe, "question": number, "asks": about["asks"],
                     "about": about.get("location") or about.get("dish"), "choices": begun[probe][number - 1]["choices"],
                 }
-            elif did in ("answered", "skipped") and (row := questions.get((probe, event.get("question")))):
-                answer = event.get("answer")
-                row |= {
-                    "answered_s": event["t_ns"] / 1e9, "on": event.get("on"), "confidence": event.get("confidence"),
-                    "answer": answer if isinstance(answer, str) or answer is None else json.dumps(answer),
-                    "skipped": event.get("reason"),
+            elif did == "answered":
+                questions[probe, event["question"]] |= {
+                    "answered_s": event["t_ns"] / 1e9, "on": event["on"], "confidence": event.get("confidence"), "answer": event.get("answer"),
                 }
+            elif did == "skipped":
+                open_ones = [row for (of, _), row in questions.items() if of == probe and "answered_s" not in row]
+                for row in open_ones:
+                    row["skipped"] = event["reason"]
         return self._table(list(questions.values()), PROBES)
 
     @cached_property

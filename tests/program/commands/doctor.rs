@@ -115,7 +115,7 @@ fn a_fault_report_has_machine_and_warnings_and_no_codes() {
     let added = format!(
         "{kept}\n{{\"seq\":{at},\"t_ns\":{t_ns},\"kind\":\"clock_jumped\",\"by_ms\":4321}}\n\
          {{\"seq\":{},\"t_ns\":{t_ns},\"kind\":\"marker\",\"note\":\"Anna7 said a secret\"}}\n\
-         {{\"seq\":{},\"t_ns\":{t_ns},\"kind\":\"tracker\",\"saw\":\"lost\",\"reason\":\"the cable of Anna7\"}}\n{end}\n",
+         {{\"seq\":{},\"t_ns\":{t_ns},\"kind\":\"tracker\",\"what\":\"lost\",\"reason\":\"the cable of Anna7\"}}\n{end}\n",
         at + 1,
         at + 2
     );

@@ -40,7 +40,7 @@ use miette::MietteHandlerOpts;
 use self::args::*;
 use self::failure::{Failure, wrong_argument};
 use self::lab::tell_carried;
-use self::output::{OutputFormat, print, put, put_error};
+use self::output::{OutputFormat, print, put, put_aside, put_error};
 use crate::console;
 use crate::run::doctor::{self, fault_report};
 use crate::run::files;
@@ -215,6 +215,7 @@ fn examine(args: &DoctorArgs) -> Result<(), Failure> {
     if let Some(report) = &args.report {
         let written = fault_report::write(report, &files.spec, &found, &args.out);
         written.map_err(|reason| FileError::unwritable(report, reason))?;
+        put_aside(&format!("{} is written; read it before you send it\n", report.display()));
     }
     print(args.format, &found, || doctor::describe(&found, doctor::columns()))?;
     if found.healthy { Ok(()) } else { Err(Failure::No) }

@@ -33,7 +33,7 @@ PROBES = MOMENT | {
     "confidence": "Int64", "answered_s": "float64", "on": "string", "skipped": "string", "choices": "object",
 }
 ORDERS = MOMENT | {"order": "string", "dish": "string", "cleared_s": "float64"}
-CLOCK = ("trial_started", "trial_paused", "trial_resumed", "trial_ended", "trial_aborted")
+CLOCK = ("trial_started", "trial_paused", "trial_resumed", "trial_ended", "trial_aborted", "probe")
 
 
 def read(path: str | os.PathLike[str]) -> Recording:
@@ -50,7 +50,7 @@ def recordings(folder: str | os.PathLike[str]) -> list[Recording]:
 
 class Recording:
     """A recorded session. Times are in seconds: `t_s` of the session, `trial_s` of the trial's clock, which stands
-    still in pauses and is missing before the trial."""
+    still in pauses and freeze probes, and is missing before the trial."""
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         path = Path(path)
@@ -125,13 +125,22 @@ class Recording:
     def _clock(self) -> tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray]:
         """By numbers of events: from when on the trial's clock has read so many ns at which time, and whether it runs."""
         seqs, pairs, runs = [], [], []
-        since, before, started, running = 0, 0, False, False
+        since, before = 0, 0
+        started = paused = probed = over = running = False
         for event in self.log(*CLOCK):
-            now = event["t_ns"]
-            if event["kind"] in ("trial_started", "trial_resumed"):
-                since, started, running = now, True, True
-            elif running:
-                before, since, running = before + now - since, now, False
+            now, kind = event["t_ns"], event["kind"]
+            if kind == "probe" and event["did"] not in ("begun", "ended"):
+                continue
+            before, since = before + (now - since if running else 0), now
+            if kind == "trial_started":
+                started = True
+            elif kind in ("trial_paused", "trial_resumed"):
+                paused = kind == "trial_paused"
+            elif kind == "probe":
+                probed = event["did"] == "begun"
+            else:
+                over = True
+            running = started and not (paused or probed or over)
             if started:
                 seqs.append(event["seq"])
                 pairs.append((since, before))
@@ -192,8 +201,8 @@ class Recording:
 
     @cached_property
     def beliefs(self) -> pandas.DataFrame:
-        """Beliefs about every aspect of the kitchen before a press of the participant. `source`: "participant" (of a simulated one, so known) or
-        "estimate"; `values`: every value with its probability; `log_p`: of the press, under the estimate."""
+        """Beliefs about every aspect of the kitchen before a press of the participant, and before a freeze probe. `source`:
+        "participant" (of a simulated one, so known) or "estimate" (before presses); `values`: every value with its probability; `log_p`: of the press, under the estimate."""
         rows = [
             {"seq": event["seq"], "t_ns": event["t_ns"], "source": source, "press": event.get("press"), "log_p": event.get("log_p")} | aspect
             for event in self.log("participant_believes", "belief_estimated")

@@ -1,5 +1,6 @@
 //! The files that the program carries, so that it runs without a checkout, and `tomcom new` writes a lab's folder.
 
+use std::fs;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
@@ -60,9 +61,9 @@ pub fn instead_of(path: &Path) -> Option<&'static str> {
 /// Refuses a file that would be read from what the program carries: who runs a session with a person and names its file
 /// means that file, and may be in the wrong folder.
 pub fn refuse(path: &Path) -> FileResult<()> {
-    match instead_of(path) {
-        Some(_) => Err(FileError::unreadable(path, io::ErrorKind::NotFound.into(), REMEDY)),
-        None => Ok(()),
+    match (instead_of(path), fs::metadata(path)) {
+        (Some(_), Err(reason)) => Err(FileError::unreadable(path, reason, REMEDY)),
+        _ => Ok(()),
     }
 }
 

@@ -51,12 +51,16 @@ fn scratch(kind: &str, page: &Page) -> PathBuf {
     folder
 }
 
+/// Where commands are found: first the program.
+fn path_with_program() -> String {
+    let program = Path::new(TOMCOM).parent().expect("a folder");
+    format!("{}:{}", program.display(), std::env::var("PATH").unwrap_or_default())
+}
+
 /// Runs a line in a shell, with the program in its path; what it printed.
 fn run(line: &str, folder: &Path, place: &str) -> String {
-    let program = Path::new(TOMCOM).parent().expect("a folder");
-    let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap_or_default());
     let mut shell = Command::new("sh");
-    shell.args(["-c", line]).current_dir(folder).env("PATH", path).stdin(Stdio::null());
+    shell.args(["-c", line]).current_dir(folder).env("PATH", path_with_program()).stdin(Stdio::null());
     let output = shell.output().expect("a shell");
     let told = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{place}: {line}\n{told}");
@@ -105,7 +109,7 @@ fn what_the_pages_show_is_what_the_program_does() {
     pages().par_iter().for_each(|page| hold(page, &scratch("docs", page), |_, _| ()));
 }
 
-/// What is about pandas runs; what is about other packages and devices is compiled.
+/// What is about the program's own package runs; what is about other packages and devices is compiled.
 #[test]
 #[ignore = "needs Python with pandas, which TOMCOM_PYTHON names"]
 fn python_on_the_pages_runs() {
@@ -114,11 +118,14 @@ fn python_on_the_pages_runs() {
     pages().par_iter().filter(has_python).for_each(|page| {
         let folder = scratch("docs-python", page);
         hold(page, &folder, |block, place| {
-            let code = match block.text.contains("import pandas") {
+            let code = match block.text.contains("import tomcom") {
                 true => block.text.clone(),
                 false => format!("compile({:?}, 'snippet', 'exec')", block.text),
             };
-            let done = Command::new(&python).args(["-c", &code]).current_dir(&folder).output().expect("Python");
+            let mut python = Command::new(&python);
+            let package = Path::new(env!("CARGO_MANIFEST_DIR")).join("packaging/python");
+            python.args(["-c", &code]).current_dir(&folder).env("PATH", path_with_program()).env("PYTHONPATH", package);
+            let done = python.output().expect("Python");
             assert!(done.status.success(), "{place}: {}", String::from_utf8_lossy(&done.stderr));
         });
     });

@@ -55,8 +55,8 @@ fn a_new_lab_simulates_every_session_and_overwrites_nothing() {
     let (code, told) = run_in(&lab, &["plan"]);
     assert_eq!((code, told.as_str()), (Some(0), ""));
     for session in ["all-arms", "arms", "default", "paper", "probes", "study"] {
-        let session = format!("sessions/{session}.toml");
-        let simulated = run_in(&lab, &["simulate", &session, "--trials", "1", "--arm", "timed", "--out", "pilot"]);
+        let (file, out) = (format!("sessions/{session}.toml"), format!("pilot/{session}"));
+        let simulated = run_in(&lab, &["simulate", &file, "--trials", "1", "--arm", "timed", "--out", &out]);
         assert_eq!(simulated.0, Some(0), "{}", simulated.1);
         assert!(!simulated.1.contains("carries"), "{}", simulated.1);
     }

@@ -7,6 +7,7 @@ mod data;
 mod estimates;
 mod exports;
 mod failure;
+mod lab;
 mod list;
 #[cfg(feature = "mcap")]
 mod mcap_exports;
@@ -28,6 +29,7 @@ mod tutorial_alone;
 mod wizard;
 
 use std::io::{IsTerminal, Write};
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
@@ -37,15 +39,17 @@ use miette::MietteHandlerOpts;
 
 use self::args::*;
 use self::failure::{Failure, wrong_argument};
-use self::output::{OutputFormat, print, put, put_error};
+use self::lab::tell_carried;
+use self::output::{OutputFormat, print, put, put_aside, put_error};
 use crate::console;
-use crate::run::doctor;
+use crate::run::doctor::{self, fault_report};
 use crate::run::files;
 use crate::run::key_file;
-use crate::run::options;
+use crate::run::options::{self, DEFAULT_SESSION};
 use crate::run::plan::{self, StudyProgress};
 use crate::run::review_console as console_over;
 use tomcom_core::base::text::printable;
+use tomcom_session::files::file_error::FileError;
 use tomcom_session::history::event_words;
 use tomcom_session::log::{self, LogEnding};
 use tomcom_session::replay::RecordingReplay;
@@ -73,6 +77,7 @@ pub fn main() -> ExitCode {
         flags: cli.operate,
     }));
     let done = match command {
+        CliCommand::New(args) => lab::new(&args),
         CliCommand::Operate(args) => operate::operate(&args),
         CliCommand::Compare(args) => wizard::compare(&args),
         CliCommand::Tutorial(args) => tutorial_alone::tutorial(&args),
@@ -117,6 +122,7 @@ fn printable_error(error: clap::Error) -> clap::Error {
 
 fn show_plan(args: &PlanArgs) -> Result<(), Failure> {
     let files = files::read_session(&args.session)?;
+    tell_carried(&args.session, Some(&args.out));
     let Some(study) = files.study() else {
         let found = "a session without a plan".to_string();
         return Err(wrong_argument(&args.session, found, "a session file with a [plan], like sessions/study.toml"));
@@ -173,6 +179,7 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
 
 fn kitchen(args: &KitchenArgs) -> Result<(), Failure> {
     let kitchen = Arc::new(files::read_kitchen(&args.layout)?.kitchen);
+    tell_carried(&args.layout, None);
     let figures = KitchenSummary::from_kitchen(&kitchen);
     print(args.format, &figures, || kitchen_summary::describe(&kitchen, &figures))
 }
@@ -203,13 +210,20 @@ fn correct(args: &CorrectArgs) -> Result<(), Failure> {
 
 fn examine(args: &DoctorArgs) -> Result<(), Failure> {
     let files = options::session_or_default(args.session.as_deref())?;
+    tell_carried(args.session.as_deref().unwrap_or(Path::new(DEFAULT_SESSION)), Some(&args.out));
     let found = doctor::examine(&files.spec, &files.kitchen.kitchen, &args.out);
+    if let Some(report) = &args.report {
+        let written = fault_report::write(report, &files.spec, &found, &args.out);
+        written.map_err(|reason| FileError::unwritable(report, reason))?;
+        put_aside(&format!("{} is written; read it before you send it\n", report.display()));
+    }
     print(args.format, &found, || doctor::describe(&found, doctor::columns()))?;
     if found.healthy { Ok(()) } else { Err(Failure::No) }
 }
 
 fn keys(args: &KeysArgs) -> Result<(), Failure> {
     let files = options::session_or_default(args.session.as_deref())?;
+    tell_carried(args.session.as_deref().unwrap_or(Path::new(DEFAULT_SESSION)), None);
     let map = key_file::key_map(files.keys.as_ref())?;
     let lines = console::keys::lines(&files.kitchen.kitchen, &map)
         .map_err(|error| Failure::Wrong(miette::miette!(help = error.remedy, "{}", error.found)))?;

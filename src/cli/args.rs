@@ -8,6 +8,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use super::choices::{ArmArg, SimulatedCondition, concept_parser};
 use super::data::{CodesArgs, ForgetArgs};
 use super::exports::ExportArgs;
+use super::lab::NewArgs;
 use super::list::ListArgs;
 use super::operate::{OperateArgs, OperateFlags};
 use super::output::OutputFormat;
@@ -34,6 +35,7 @@ pub(super) struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum CliCommand {
+    New(NewArgs),
     Operate(OperateArgs),
     Compare(CompareArgs),
     Tutorial(TutorialArgs),
@@ -94,6 +96,7 @@ pub(super) struct ReplayArgs {
 #[command(after_help = "Example: tomcom plan sessions/study.toml --out sessions\nMore: docs/study.md")]
 pub(super) struct PlanArgs {
     /// The session file with the plan.
+    #[arg(default_value = "sessions/study.toml")]
     pub(super) session: PathBuf,
     /// Folder of the recordings.
     #[arg(long, default_value = "sessions")]
@@ -116,6 +119,7 @@ pub(super) struct PlanArgs {
 )]
 pub(super) struct SimulateArgs {
     /// The session file to simulate.
+    #[arg(default_value = "sessions/default.toml")]
     pub(super) session: PathBuf,
     /// Number of trials; each has its own orders and participant and does not depend on their number. With a plan: the
     /// first trials of the plan, participant by participant. Default: 1, or the whole plan.
@@ -234,6 +238,7 @@ impl FitParameter {
 #[command(after_help = "Example: tomcom kitchen layouts/sushi.toml --format json\nMore: docs/writing-a-kitchen.md")]
 pub(super) struct KitchenArgs {
     /// The layout file.
+    #[arg(default_value = "layouts/sushi.toml")]
     pub(super) layout: PathBuf,
     /// Output format.
     #[arg(long, value_enum, default_value = "text")]
@@ -307,11 +312,15 @@ pub(super) struct CorrectArgs {
                   tomcom doctor sessions/study.toml\nMore: docs/troubleshooting.md"
 )]
 pub(super) struct DoctorArgs {
-    /// Session file with the settings; by default sessions/default.toml, or the built-in one.
+    /// Session file with the settings; by default sessions/default.toml.
     pub(super) session: Option<PathBuf>,
     /// Folder for recordings.
     #[arg(long, default_value = "sessions")]
     pub(super) out: PathBuf,
+    /// Also write a file to send with the report of a fault: versions, machine, checks, the session without codes, and the
+    /// last warnings of the newest recording in the folder for recordings. Read it before you send it.
+    #[arg(long, value_name = "FILE")]
+    pub(super) report: Option<PathBuf>,
     /// Output format.
     #[arg(long, value_enum, default_value = "text")]
     pub(super) format: OutputFormat,

@@ -7,11 +7,14 @@ use clap::Args;
 
 use super::choices::{ArmArg, ConditionArg, ParticipantArg, concept_parser, gaze_parser};
 use super::failure::{Failure, wrong_setting};
+use super::lab::tell_carried;
 use super::output::{put, put_aside};
-use crate::run::options::{self, SeriesRequest, SessionStart, SettingOverrides};
+use crate::run::files;
+use crate::run::options::{self, DEFAULT_SESSION, SeriesRequest, SessionStart, SettingOverrides};
 use crate::run::series::{self, SeriesOutcome};
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_session::features::Feature;
+use tomcom_session::files::carried;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
 use tomcom_session::watcher::SenderComparisonSettings;
@@ -23,7 +26,7 @@ use tomcom_session::watcher::SenderComparisonSettings;
                   tomcom operate sessions/study.toml --code P07\nMore: docs/running-a-session.md"
 )]
 pub(super) struct OperateArgs {
-    /// The session file; by default sessions/default.toml, or the built-in one.
+    /// The session file; by default sessions/default.toml.
     pub(super) session: Option<PathBuf>,
     /// Continue a recording that was cut off or ended early, in a new part beside it; a running trial is paused.
     #[arg(long = "continue", value_name = "RECORDING", conflicts_with_all = ["session", "code", "participant", "gaze", "gaze_file", "gaze_start", "arm", "listen", "condition", "concept", "seed", "rerun_listen", "out"])]
@@ -94,7 +97,10 @@ pub(super) fn new_session(
     if flags.rerun_listen.is_some() {
         Feature::Rerun.require()?;
     }
-    let mut files = options::session_or_default(session)?;
+    session.map_or(Ok(()), carried::refuse)?;
+    let name = session.unwrap_or(Path::new(DEFAULT_SESSION));
+    let mut files = files::read_session(name)?;
+    tell_carried(name, Some(&flags.out));
     let overrides = SettingOverrides {
         participant: flags.participant.map(ParticipantKind::from),
         arm: flags.arm.map(ArmKind::from),
@@ -109,7 +115,6 @@ pub(super) fn new_session(
         rerun_listen: flags.rerun_listen.clone(),
     };
     overrides.apply(&mut files).map_err(wrong_setting)?;
-    let name = session.unwrap_or(Path::new("sessions/default.toml"));
     files.spec.require_built_live().map_err(|missing| FileError::not_built(name, missing))?;
     let out = flags.out.clone();
     if flags.code.is_none() && files.spec.plan.is_none() {

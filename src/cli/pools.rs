@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::choices::ArmArg;
 use super::failure::{Failure, wrong_argument};
+use super::lab::tell_carried;
 use super::output::{OutputFormat, print, progress, put_aside};
 use crate::run::files::read_session;
 use crate::run::picture_file::{check_picture, write_picture};
@@ -119,6 +120,7 @@ impl PoolArgs {
     /// simulate trials in the plan's arms; `unassisted`: simulate trials without signals.
     fn pool(&self, arms: bool, unassisted: bool) -> Result<Option<SimulationPool>, Failure> {
         let mut files = read_session(&self.plan)?;
+        tell_carried(&self.plan, None);
         let spec = &mut files.spec;
         spec.robot.arm = self.arm.map_or(spec.robot.arm, ArmKind::from);
         spec.require_built().map_err(|missing| FileError::not_built(&self.plan, missing))?;

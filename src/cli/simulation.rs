@@ -2,6 +2,7 @@
 
 use super::args::SimulateArgs;
 use super::failure::{Failure, wrong_argument};
+use super::lab::tell_carried;
 use super::output::{print, progress, put_aside};
 use super::rerun_messages::save_all;
 use crate::run::files;
@@ -21,6 +22,7 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
         Feature::Rerun.require()?;
     }
     let mut files = files::read_session(&args.session)?;
+    tell_carried(&args.session, Some(&args.out));
     let participant = &files.spec.participant;
     let is_simulated = participant.kind == ParticipantKind::Simulated
         && matches!(participant.gaze, GazeSource::Simulated | GazeSource::None);

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::failure::{Failure, wrong_argument, wrong_setting};
+use super::lab::tell_carried;
 use super::operate::address_without_port;
 use super::output::put;
 use crate::run::files;
@@ -45,6 +46,7 @@ pub(super) struct TutorialArgs {
 pub(super) fn tutorial(args: &TutorialArgs) -> Result<(), Failure> {
     let name: &Path = &args.session;
     let mut files = files::read_session_in(name, args.language.as_deref())?;
+    tell_carried(name, Some(&args.out));
     let overrides = SettingOverrides {
         participant: Some(ParticipantKind::Display),
         arm: Some(ArmKind::Timed),

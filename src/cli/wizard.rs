@@ -1,15 +1,17 @@
 //! Commands about the wizard: comparison with assistants, and training.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::choices::concept_parser;
 use super::failure::Failure;
+use super::lab::tell_carried;
 use super::list::{chosen, each_chosen, exists, gathered};
 use super::operate::{OperateFlags, new_session};
 use super::output::{OutputFormat, print, progress, put};
 use crate::console::console_model::SPEEDS;
+use crate::run::options::DEFAULT_SESSION;
 use crate::run::train::{self, WizardTrainingRequest};
 use crate::run::{review_console, series, simulate};
 use tomcom_core::communication::concept::ConceptName;
@@ -182,7 +184,10 @@ pub(super) fn train(args: &TrainArgs) -> Result<(), Failure> {
         return Err(Failure::Wrong(miette::miette!(help = "a share of signals from 0 to 1", "found --{key} {value}")));
     }
     let recordings = match &args.recordings[..] {
-        [] => simulate::for_training(args.seed, args.seconds, &args.out.join("recordings"))?,
+        [] => {
+            tell_carried(Path::new(DEFAULT_SESSION), Some(&args.out));
+            simulate::for_training(args.seed, args.seconds, &args.out.join("recordings"))?
+        }
         given => each_chosen(given)?,
     };
     let lesson = WizardTrainingRequest {

@@ -2,6 +2,7 @@
 //! recordings, clocks, ports, trackers. Every finding names a remedy.
 
 mod devices;
+pub mod fault_report;
 
 use std::fs;
 use std::io::{self, IsTerminal, Write};
@@ -38,25 +39,36 @@ const WRITTEN: &str = "2025-01-01";
 pub struct DoctorReport {
     /// Whether no check of `tomcom doctor` failed.
     pub healthy: bool,
-    pub checks: Vec<PreflightCheck>,
+    pub checks: Vec<DoctorCheck>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DoctorCheck {
+    /// What is missing where the check is not ok: "for the console".
+    pub purpose: &'static str,
+    #[serde(flatten)]
+    pub check: PreflightCheck,
 }
 
 /// Checks everything that a session with these settings needs; `out` is the folder for its recordings.
 pub fn examine(spec: &SessionSpec, kitchen: &Kitchen, out: &Path) -> DoctorReport {
-    let mut checks = terminal(spec);
     let place = folder(out);
     // The free disk space matters only if the folder for recordings can be written to.
     let room = (place.verdict == PreflightVerdict::Ok).then(|| space(free_bytes(&existing(out)).ok()));
-    checks.push(place);
-    checks.extend(room);
-    checks.extend([wall_clock(), timer()]);
-    checks.extend(devices::display(spec));
+    let mut checks = Vec::new();
+    let mut add = |purpose, found: Vec<PreflightCheck>| {
+        checks.extend(found.into_iter().map(|check| DoctorCheck { purpose, check }));
+    };
+    add("for the console", terminal(spec));
+    add("to record", [place].into_iter().chain(room).collect());
+    add("for times in recordings", vec![wall_clock(), timer()]);
+    add("for the participant's page", devices::display(spec).into_iter().collect());
     #[cfg(feature = "rerun")]
-    checks.push(viewer());
-    checks.extend(left_out());
-    checks.extend(devices::lsl(spec));
-    checks.extend(devices::gaze(spec, kitchen));
-    let healthy = checks.iter().all(|check| check.verdict != PreflightVerdict::Failed);
+    add("for Rerun", vec![viewer()]);
+    add("for parts that this program was built without", left_out().collect());
+    add("for the Lab Streaming Layer", devices::lsl(spec).into_iter().collect());
+    add("for gaze", devices::gaze(spec, kitchen));
+    let healthy = checks.iter().all(|one| one.check.verdict != PreflightVerdict::Failed);
     DoctorReport { healthy, checks }
 }
 
@@ -78,7 +90,7 @@ pub fn describe(findings: &DoctorReport, columns: u16) -> String {
         let remedy = check.remedy.as_ref().map_or(String::new(), |remedy| indented("", &format!("fix: {remedy}")));
         indented(&format!("{mark}  {:<16}  ", check.name), &check.found) + &remedy
     };
-    let lines: String = findings.checks.iter().map(told).collect();
+    let lines: String = findings.checks.iter().map(|one| told(&one.check)).collect();
     lines + &wrap(&findings.conclusion(), columns).join("\n") + "\n"
 }
 
@@ -86,9 +98,8 @@ impl DoctorReport {
     /// Whether a session can begin, and what is wrong for what.
     fn conclusion(&self) -> String {
         let wrong = |verdict: PreflightVerdict| {
-            let of_it = self.checks.iter().filter(|check| check.verdict == verdict);
-            let mut told: Vec<String> =
-                of_it.map(|check| format!("{} ({})", check.name, purpose(&check.name))).collect();
+            let of_it = self.checks.iter().filter(|one| one.check.verdict == verdict);
+            let mut told: Vec<String> = of_it.map(|one| format!("{} ({})", one.check.name, one.purpose)).collect();
             told.dedup();
             told.join(", ")
         };
@@ -98,20 +109,6 @@ impl DoctorReport {
             (true, false) => format!("ready; not perfect: {limited}"),
             (false, _) => format!("NOT READY: {failed}"),
         }
-    }
-}
-
-/// What a check is about is needed for.
-fn purpose(check: &str) -> &'static str {
-    match check {
-        "terminal" | "terminal size" | "colours" | "key releases" | "mouse" => "for the console",
-        "recordings" | "free space" => "to record",
-        "wall clock" | "timer" => "for times in recordings",
-        "wall display" => "for the participant's page",
-        "viewer" => "for Rerun",
-        "lsl" => "for the Lab Streaming Layer",
-        "build" => "for parts that this program was built without",
-        _ => "for gaze",
     }
 }
 

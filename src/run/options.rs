@@ -8,8 +8,8 @@ use crate::run::files;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_session::LogHeader;
+use tomcom_session::files::SessionSetup;
 use tomcom_session::files::file_error::FileResult;
-use tomcom_session::files::{SessionSetup, built_in_session};
 use tomcom_session::plan::PlanSpec;
 use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, SettingError};
 use tomcom_session::watcher::SenderComparisonSettings;
@@ -135,15 +135,13 @@ pub fn participant_of_plan(plan: &PlanSpec, code: Option<&str>) -> Result<usize,
     place.ok_or_else(|| wrong(format!("--code {code}, a participant who is not in the plan \"{}\"", plan.name)))
 }
 
-/// Reads the given session file, or else `sessions/default.toml` if it exists, or else the built-in default session.
+/// The session of commands that are given none.
+pub const DEFAULT_SESSION: &str = "sessions/default.toml";
+
+/// Reads the given session file, or else that of the default session.
 ///
 /// # Errors
 /// The errors of [`files::read_session`].
 pub fn session_or_default(path: Option<&Path>) -> FileResult<SessionSetup> {
-    let default = Path::new("sessions/default.toml");
-    match path {
-        Some(path) => files::read_session(path),
-        None if default.exists() => files::read_session(default),
-        None => built_in_session(),
-    }
+    files::read_session(path.unwrap_or(Path::new(DEFAULT_SESSION)))
 }

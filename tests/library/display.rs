@@ -7,7 +7,6 @@ use tomcom_core::communication::signals;
 use tomcom_devices::sight::page_language::DisplayWords;
 use tomcom_devices::sight::{DisplayStage, TrialClockState, scene, sight, time_left};
 use tomcom_session::files::LanguageFile;
-use tomcom_session::files::built_in_session;
 use tomcom_session::files::parse::parse;
 use tomcom_session::protocol::StudyPhase;
 use tomcom_session::wall_display::{DisplayEvent, DisplaySpec, RobotDepiction};
@@ -487,7 +486,7 @@ fn the_page_says_that_the_robot_is_stopped_also_where_a_real_one_stands() {
 
 #[test]
 fn a_press_that_is_refused_names_its_button_in_signs_that_can_be_shown() {
-    let files = built_in_session().expect("the program's own session");
+    let files = files("sessions/default.toml");
     let session = Session::new(Arc::new(files.kitchen.kitchen), files.spec, 0);
     let refused = |button: &str| {
         let PageEvent { event, notice } = press(button.to_string(), Instant::now(), &session, SessionTime::ZERO);

@@ -7,6 +7,7 @@ The R scripts run where R is installed (Debian: r-base-core, r-cran-jsonlite); w
 
 import csv
 import json
+import os
 import shutil
 import statistics
 import subprocess
@@ -120,6 +121,7 @@ def main(tomcom, folder):
     recordings = simulate(tomcom, folder)
     recordings.append(pause(recordings[0]))
     python, rscript = sys.executable, shutil.which("Rscript")
+    os.environ["PYTHONPATH"] = "packaging/python"
     has_r = rscript and subprocess.run([rscript, "-e", "library(jsonlite)"], capture_output=True).returncode == 0
     for recording in recordings:
         wanted = expected(recording)

@@ -10,6 +10,7 @@ use miette::{Diagnostic, NamedSource, SourceSpan};
 use toml::de::{DeTable, DeValue};
 
 use crate::features::{Feature, MissingFeature};
+use crate::files::carried;
 use tomcom_core::base::text::{printable, printable_lines};
 
 pub type FileResult<T> = Result<T, FileError>;
@@ -178,9 +179,15 @@ pub fn read_regular(path: &Path) -> io::Result<String> {
     String::from_utf8(bytes).map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error.utf8_error()))
 }
 
-/// Reads the text of a file that people write, as [`read_regular`] does.
+/// Reads the text of a file that people write, as [`read_regular`] does, or of one that the program carries.
 pub fn read_text(path: &Path) -> FileResult<String> {
-    read_regular(path).map_err(|reason| FileError::unreadable(path, reason, "the path of a readable text file (UTF-8)"))
+    carried::read(path).map_err(|reason| {
+        let remedy = match reason.kind() == io::ErrorKind::NotFound && carried::has(path) {
+            true => carried::REMEDY,
+            false => "the path of a readable text file (UTF-8)",
+        };
+        FileError::unreadable(path, reason, remedy)
+    })
 }
 
 /// Byte range of the `nth` setting (from 0) with this dotted path in a TOML text, outermost table first:

@@ -1,6 +1,7 @@
 //! Reads session, layout and recipe files, and the files that they name. Every error names the file, the line, what
 //! was found and what would be valid.
 
+pub mod carried;
 pub mod file_error;
 pub mod overwrite;
 pub mod parse;
@@ -120,7 +121,8 @@ fn read_keys(session: &Path, text: &str, spec: &SessionSpec) -> FileResult<Optio
 
 /// A file that a session file names must exist; the setting that names it is given as to [`missing`].
 fn check_there(path: &Path, session: &Path, text: &str, setting: (&str, usize, &str), remedy: &str) -> FileResult<()> {
-    std::fs::metadata(path).map(drop).map_err(|reason| missing(session, text, setting, reason, remedy))
+    let there = if carried::instead_of(path).is_some() { Ok(()) } else { std::fs::metadata(path).map(drop) };
+    there.map_err(|reason| missing(session, text, setting, reason, remedy))
 }
 
 /// In the plan's order, and in the session's language.
@@ -163,7 +165,7 @@ fn in_language(path: PathBuf, code: &str) -> PathBuf {
     // A setting that names a file of texts instead of a language has a path here, not a language code.
     let is_code = code.chars().all(|sign| sign.is_ascii_alphanumeric() || sign == '-');
     let own = is_code.then(|| path.with_extension(format!("{code}.toml")));
-    own.filter(|own| own.is_file()).unwrap_or(path)
+    own.filter(|own| own.is_file() || carried::instead_of(own).is_some()).unwrap_or(path)
 }
 
 fn wrong_setting(path: &Path, text: &str, error: SettingError) -> FileError {
@@ -183,15 +185,6 @@ pub fn read_human_model(path: &Path) -> FileResult<HumanModel> {
     Ok(model)
 }
 
-/// The default session with its kitchen; both are part of the program, so that it runs without any file.
-pub fn built_in_session() -> FileResult<SessionSetup> {
-    let spec: SessionSpec = parse(Path::new("sessions/default.toml"), include_str!("../../../sessions/default.toml"))?;
-    let layout = (Path::new(&spec.layout), include_str!("../../../layouts/sushi.toml").to_string());
-    let recipes = (Path::new("../recipes/sushi.toml"), include_str!("../../../recipes/sushi.toml").to_string());
-    let kitchen = compile_kitchen(layout, recipes)?;
-    Ok(SessionSetup { spec, kitchen, keys: None, questionnaires: Vec::new(), tutorial: None })
-}
-
 /// With its source texts, which go into the header of every recording.
 #[derive(Clone, Debug)]
 pub struct KitchenWithSources {
@@ -207,7 +200,7 @@ pub fn read_kitchen(layout_path: &Path) -> FileResult<KitchenWithSources> {
     let layout: LayoutSpec = parse(layout_path, &layout_text)?;
     let folder = layout_path.parent().unwrap_or(Path::new("."));
     let recipes_path = folder.join(layout.recipes.get_ref());
-    let recipes_text = read_regular(&recipes_path).map_err(|reason| {
+    let recipes_text = carried::read(&recipes_path).map_err(|reason| {
         let found = format!("recipes = \"{}\", which cannot be read: {reason}", layout.recipes.get_ref());
         let remedy = "the path of a recipe file, relative to the layout file".to_string();
         FileError::at(layout_path, &layout_text, Some(layout.recipes.span()), found, remedy)

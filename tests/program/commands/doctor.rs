@@ -23,6 +23,7 @@ fn doctor_looks_at_the_machine_and_says_how_to_mend_it() {
     assert_eq!((verdict("recordings"), verdict("wall clock")), (Some("ok"), Some("ok")));
     assert!(fs::read_dir(&out).expect("the folder").next().is_none(), "it leaves nothing behind");
     for check in checks {
+        assert!(check["purpose"].as_str().is_some_and(|purpose| !purpose.is_empty()), "{check}");
         assert_eq!(check["remedy"].is_string(), check["verdict"] != "ok", "{check}");
     }
     let told = check(&["doctor", "--out", "/proc/nowhere"], 1);
@@ -89,6 +90,58 @@ fn doctor_looks_at_what_a_session_names() {
         assert!(found == expected && words.contains(told), "{found}: {words}");
     }
     assert!(complaint(&["doctor", "sessions/nowhere.toml"]).contains("sessions/nowhere.toml"));
+}
+
+#[test]
+fn a_fault_report_has_machine_and_warnings_and_no_codes() {
+    let place = folder("fault-report");
+    let [out, file, plan] = ["recordings", "fault.md", "plan.toml"].map(|name| place.join(name).display().to_string());
+    let text = fs::read_to_string("sessions/study.toml").expect("a session");
+    let text = text.replace("\"../", &format!("\"{}/", env!("CARGO_MANIFEST_DIR")));
+    let text = text.replace("participants = 14 ", "participants = [\"Anna7\", \"Bert8\"] ");
+    let text = text.replace("\"questionnaires/", &format!("\"{}/sessions/questionnaires/", env!("CARGO_MANIFEST_DIR")));
+    let text = text.replace("\"tutorials/", &format!("\"{}/sessions/tutorials/", env!("CARGO_MANIFEST_DIR")));
+    fs::write(&plan, text).expect("written");
+    check(&["simulate", &plan, "--trials", "1", "--arm", "timed", "--out", &out], 0);
+    // What a live session would have recorded.
+    let recording = fs::read_dir(&out).expect("a folder").next().expect("a recording").expect("an entry").path();
+    let log = recording.join("events.jsonl");
+    let lines = fs::read_to_string(&log).expect("a log");
+    let (kept, end) = lines.trim_end().rsplit_once('\n').expect("lines");
+    let mut end: Value = serde_json::from_str(end).expect("an event");
+    let at = end["seq"].as_u64().expect("a number");
+    end["seq"] = (at + 3).into();
+    let t_ns = &end["t_ns"];
+    let added = format!(
+        "{kept}\n{{\"seq\":{at},\"t_ns\":{t_ns},\"kind\":\"clock_jumped\",\"by_ms\":4321}}\n\
+         {{\"seq\":{},\"t_ns\":{t_ns},\"kind\":\"marker\",\"note\":\"Anna7 said a secret\"}}\n\
+         {{\"seq\":{},\"t_ns\":{t_ns},\"kind\":\"tracker\",\"what\":\"lost\",\"reason\":\"the cable of Anna7\"}}\n{end}\n",
+        at + 1,
+        at + 2
+    );
+    fs::write(&log, added).expect("written");
+    let doctor = ["doctor", &plan, "--out", &out, "--report", &file];
+    check(&doctor, 1);
+    let report = fs::read_to_string(&file).expect("a report");
+    for has in [
+        concat!("tomcom ", env!("CARGO_PKG_VERSION")),
+        "## Machine",
+        "NOT READY: terminal (for the console)",
+        "participants = 2",
+        "4321",
+        "the cable of <code>",
+    ] {
+        assert!(report.contains(has), "{has:?} is not in\n{report}");
+    }
+    for lacks in ["Anna7", "Bert8", "secret"] {
+        assert!(!report.contains(lacks), "{lacks} is in\n{report}");
+    }
+    check(&doctor, 1);
+    fs::write(&file, "# Mine\n").expect("written");
+    let told = complaint(&doctor);
+    assert!(
+        told.contains("fault.md: cannot be written") && fs::read_to_string(&file).is_ok_and(|text| text == "# Mine\n")
+    );
 }
 
 #[test]

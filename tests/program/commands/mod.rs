@@ -1,6 +1,7 @@
 //! The commands as they are typed: exit codes, what is on stdout, and what is said about wrong files.
 
 mod doctor;
+mod lab;
 mod recordings;
 mod simulate;
 mod wrong;

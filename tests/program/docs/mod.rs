@@ -38,31 +38,29 @@ fn pages() -> Vec<Page> {
     let docs = fs::read_dir("docs").expect("docs").map(|entry| entry.expect("an entry").path());
     let mut paths: Vec<PathBuf> = docs.filter(|path| path.extension().is_some_and(|kind| kind == "md")).collect();
     paths.sort();
-    let top = ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md"].map(PathBuf::from);
+    let top = ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md", "SUPPORT.md", "CODE_OF_CONDUCT.md"]
+        .map(PathBuf::from);
     top.iter().filter(|path| path.exists()).chain(&paths).map(|path| Page::read(path)).collect()
 }
 
-/// A folder of this kind with the project's own settings, in which the blocks of a page find what they name.
+/// A lab's folder, in which the blocks of a page find what they name.
 fn scratch(kind: &str, page: &Page) -> PathBuf {
     let folder = program::folder(&format!("{kind}/{}", page.path.with_extension("").display()));
-    for from in ["layouts", "recipes", "sessions", "sessions/questionnaires", "sessions/tutorials", "sessions/people"] {
-        fs::create_dir_all(folder.join(from)).expect("a folder");
-        for entry in fs::read_dir(from).expect("the project's settings") {
-            let path = entry.expect("an entry").path();
-            if path.extension().is_some_and(|kind| kind == "toml") {
-                fs::copy(&path, folder.join(&path)).expect("a file can be copied");
-            }
-        }
-    }
+    let done = Command::new(TOMCOM).arg("new").arg(&folder).stdout(Stdio::null()).status();
+    assert!(done.expect("tomcom runs").success());
     folder
+}
+
+/// Where commands are found: first the program.
+fn path_with_program() -> String {
+    let program = Path::new(TOMCOM).parent().expect("a folder");
+    format!("{}:{}", program.display(), std::env::var("PATH").unwrap_or_default())
 }
 
 /// Runs a line in a shell, with the program in its path; what it printed.
 fn run(line: &str, folder: &Path, place: &str) -> String {
-    let program = Path::new(TOMCOM).parent().expect("a folder");
-    let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap_or_default());
     let mut shell = Command::new("sh");
-    shell.args(["-c", line]).current_dir(folder).env("PATH", path).stdin(Stdio::null());
+    shell.args(["-c", line]).current_dir(folder).env("PATH", path_with_program()).stdin(Stdio::null());
     let output = shell.output().expect("a shell");
     let told = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{place}: {line}\n{told}");
@@ -111,7 +109,7 @@ fn what_the_pages_show_is_what_the_program_does() {
     pages().par_iter().for_each(|page| hold(page, &scratch("docs", page), |_, _| ()));
 }
 
-/// What is about pandas runs; what is about other packages and devices is compiled.
+/// What is about the program's own package runs; what is about other packages and devices is compiled.
 #[test]
 #[ignore = "needs Python with pandas, which TOMCOM_PYTHON names"]
 fn python_on_the_pages_runs() {
@@ -120,11 +118,14 @@ fn python_on_the_pages_runs() {
     pages().par_iter().filter(has_python).for_each(|page| {
         let folder = scratch("docs-python", page);
         hold(page, &folder, |block, place| {
-            let code = match block.text.contains("import pandas") {
+            let code = match block.text.contains("import tomcom") {
                 true => block.text.clone(),
                 false => format!("compile({:?}, 'snippet', 'exec')", block.text),
             };
-            let done = Command::new(&python).args(["-c", &code]).current_dir(&folder).output().expect("Python");
+            let mut python = Command::new(&python);
+            let package = Path::new(env!("CARGO_MANIFEST_DIR")).join("packaging/python");
+            python.args(["-c", &code]).current_dir(&folder).env("PATH", path_with_program()).env("PYTHONPATH", package);
+            let done = python.output().expect("Python");
             assert!(done.status.success(), "{place}: {}", String::from_utf8_lossy(&done.stderr));
         });
     });
@@ -203,10 +204,48 @@ fn links_and_paths_lead_somewhere_and_the_index_knows_every_page() {
             assert!(is_there, "{}: {path} is not there", page.at(*line));
         }
     }
-    let index = Page::read(Path::new("docs/index.md"));
-    for page in pages.iter().filter(|page| page.path.starts_with("docs") && page.path != index.path) {
-        let name = page.path.file_name().unwrap_or_default().to_string_lossy();
-        assert!(index.links.iter().any(|link| link.target == name), "docs/index.md does not name {name}");
+    for index in ["docs/index.md", "docs/SUMMARY.md"] {
+        let index = Page::read(Path::new(index));
+        for page in of_the_manual(&pages).filter(|page| page.path != Path::new("docs/index.md")) {
+            let name = page.path.file_name().unwrap_or_default().to_string_lossy();
+            let is_named = index.links.iter().any(|link| link.target == name);
+            assert!(is_named, "{} does not name {name}", index.path.display());
+        }
+    }
+}
+
+/// The pages of the manual, without its table of contents.
+fn of_the_manual(pages: &[Page]) -> impl Iterator<Item = &Page> {
+    pages.iter().filter(|page| page.path.starts_with("docs") && page.path != Path::new("docs/SUMMARY.md"))
+}
+
+#[test]
+fn a_page_begins_with_what_it_is_for_and_for_whom() {
+    for page in of_the_manual(&pages()) {
+        let text = fs::read_to_string(&page.path).expect("a page");
+        let mut lines = text.lines().filter(|line| !line.is_empty());
+        let place = page.path.display();
+        assert!(lines.next().is_some_and(|title| title.starts_with("# ")), "{place} begins with no title");
+        let second = lines.next().unwrap_or_default();
+        assert!(second.starts_with("For "), "{place} does not begin with whom it is for: {second}");
+    }
+}
+
+/// The Journal of Open Source Software asks for these sections, and for at most 1,000 words.
+#[test]
+fn the_paper_has_its_sections_and_no_more_words_than_the_journal_takes() {
+    let text = fs::read_to_string("docs/paper/paper.md").expect("the paper");
+    let body = text.splitn(3, "---\n").nth(2).expect("what follows the front matter");
+    let sections =
+        ["Summary", "Statement of need", "State of the field", "Software design", "Research impact statement"];
+    let found: Vec<&str> = body.lines().filter_map(|line| line.strip_prefix("# ")).collect();
+    assert_eq!(found, [&sections[..], &["AI usage disclosure", "References"]].concat());
+    let words = body.split_whitespace().count();
+    assert!(words <= 1000, "{words} words");
+    let keys = body.split('@').skip(1).filter_map(|rest| rest.split(|c: char| !c.is_alphanumeric()).next());
+    let sources = fs::read_to_string("docs/paper/paper.bib").expect("the sources");
+    for key in keys {
+        assert!(sources.contains(&format!("{{{key},")), "{key} is not among the sources");
     }
 }
 

@@ -1,0 +1,102 @@
+//! `tomcom new`, and the program outside of a lab's folder.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use tomcom_session::files::carried;
+
+use crate::program::{TOMCOM, done, folder, verified};
+
+/// The settings files below a folder.
+fn settings_below(folder: &Path, found: &mut BTreeSet<PathBuf>) {
+    for entry in fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            settings_below(&path, found);
+        } else if path.extension().is_some_and(|kind| kind == "toml") {
+            found.insert(path);
+        }
+    }
+}
+
+/// Runs the program in a folder; its exit code and what it said on standard error.
+fn run_in(place: &Path, arguments: &[&str]) -> (Option<i32>, String) {
+    let mut command = Command::new(TOMCOM);
+    command.args(arguments).current_dir(place).stdin(Stdio::null());
+    let Output { status, stderr, .. } = command.output().expect("tomcom runs");
+    (status.code(), String::from_utf8(stderr).expect("UTF-8"))
+}
+
+#[test]
+fn the_program_carries_every_settings_file_of_the_project() {
+    let mut there = BTreeSet::new();
+    ["layouts", "recipes", "sessions"].iter().for_each(|folder| settings_below(Path::new(folder), &mut there));
+    let carried: BTreeSet<PathBuf> = carried::FILES.iter().map(|(path, _)| PathBuf::from(path)).collect();
+    assert_eq!(carried, there, "src/session/files/carried.rs and the files differ");
+}
+
+#[test]
+fn a_new_lab_simulates_every_session_and_overwrites_nothing() {
+    let lab = folder("new").join("lab");
+    let path = lab.display().to_string();
+    let files = carried::FILES.len() + 1;
+    assert!(done(&["new", &path]).contains(&format!("{files} files written")));
+    let own = lab.join("recipes/burger.toml");
+    fs::write(&own, "# the lab's own\n").expect("written");
+    fs::remove_file(lab.join("sessions/study.toml")).expect("removed");
+    let (code, told) = run_in(&lab, &["plan"]);
+    assert_eq!(code, Some(2), "in a lab's folder, its own files hold: {told}");
+    assert!(told.contains("sessions/study.toml: cannot be read") && told.contains("tomcom new DIR"), "{told}");
+    let told = done(&["new", &path]);
+    assert!(told.contains("1 file written") && told.contains("recipes/burger.toml was there"), "{told}");
+    assert_eq!(fs::read_to_string(&own).expect("read"), "# the lab's own\n");
+    let (code, told) = run_in(&lab, &["plan"]);
+    assert_eq!((code, told.as_str()), (Some(0), ""));
+    for session in ["all-arms", "arms", "default", "paper", "probes", "study"] {
+        let (file, out) = (format!("sessions/{session}.toml"), format!("pilot/{session}"));
+        let simulated = run_in(&lab, &["simulate", &file, "--trials", "1", "--arm", "timed", "--out", &out]);
+        assert_eq!(simulated.0, Some(0), "{}", simulated.1);
+        assert!(!simulated.1.contains("carries"), "{}", simulated.1);
+    }
+}
+
+#[test]
+fn outside_of_a_lab_the_program_reads_what_it_carries_and_says_so() {
+    let place = folder("no-lab");
+    let goes = format!("Recordings go to {}.", place.join("pilot").display());
+    for (arguments, code, out) in [
+        (&["plan", "--out", "pilot"][..], 0, true),
+        (&["plan", "./sessions/people/../all-arms.toml"], 0, false),
+        (&["kitchen"], 0, false),
+        (&["kitchen", "layouts/burger.toml"], 0, false),
+        (&["keys"], 0, false),
+        (&["doctor", "sessions/study.toml", "--out", "pilot"], 1, true),
+        (&["simulate", "--trials", "1", "--arm", "timed", "--seed", "7", "--out", "pilot"], 0, true),
+        // There is no terminal here; where recordings would go is said before.
+        (&["--out", "pilot"], 1, true),
+        (&["tutorial", "--out", "pilot", "--language", "de"], 1, true),
+    ] {
+        let (found, told) = run_in(&place, arguments);
+        assert_eq!(found, Some(code), "{arguments:?}: {told}");
+        assert!(told.starts_with("No lab's folder is here: "), "{arguments:?}: {told}");
+        assert!(told.contains("tomcom new DIR") && told.contains(&goes) == out, "{arguments:?}: {told}");
+    }
+    let recording = place.join("pilot/seed7-S001");
+    verified(&recording);
+    let same = ["simulate", "sessions/default.toml", "--trials", "1", "--arm", "timed", "--seed", "7", "--out"];
+    let of_files = folder("no-lab-files");
+    done(&[&same[..], &[&of_files.display().to_string()]].concat());
+    let log = |folder: &Path| fs::read(folder.join("seed7-S001/events.jsonl")).expect("a log");
+    assert!(log(&place.join("pilot")) == log(&of_files), "a carried session is that of the files");
+    // Who names the file of a session with a person means that file.
+    for arguments in [&["operate", "sessions/study.toml", "--code", "P01"][..], &["plan", "sessions/other.toml"]] {
+        let (code, told) = run_in(&place, arguments);
+        assert_eq!(code, Some(2), "{told}");
+        assert!(
+            told.contains("cannot be read") && told.contains("tomcom new DIR") == (arguments[0] == "operate"),
+            "{told}"
+        );
+    }
+}

@@ -1,11 +1,11 @@
 //! The commands of the program `tomcom` and their arguments.
 
 use std::path::PathBuf;
-use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::settings::ConceptSpec;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use super::choices::{ArmArg, SimulatedCondition, concept_parser};
+use super::choices::{ArmArg, SimulatedCondition, concept};
 use super::data::{CodesArgs, ForgetArgs};
 use super::exports::ExportArgs;
 use super::list::ListArgs;
@@ -130,9 +130,10 @@ pub(super) struct SimulateArgs {
     /// Who sends signals: by default nobody, with a plan as the plan says.
     #[arg(long, value_enum)]
     pub(super) condition: Option<SimulatedCondition>,
-    /// Communication concept of the assistant, instead of the session file's.
-    #[arg(long, value_parser = concept_parser())]
-    pub(super) concept: Option<ConceptName>,
+    /// Communication concept of the assistant, instead of the session file's: tom-com, tom, dev, none, or the command
+    /// line of a program of yours.
+    #[arg(long, value_parser = concept)]
+    pub(super) concept: Option<ConceptSpec>,
     /// Kind of the robot's arm, instead of the session file's; "timed" is faster to simulate.
     #[arg(long, value_enum)]
     pub(super) arm: Option<ArmArg>,

@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::choices::{ArmArg, ConditionArg, ParticipantArg, concept_parser, gaze_parser};
+use super::choices::{ArmArg, ConditionArg, ParticipantArg, concept, gaze_parser};
 use super::failure::{Failure, wrong_setting};
 use super::output::{put, put_aside};
 use crate::run::options::{self, SeriesRequest, SessionStart, SettingOverrides};
 use crate::run::series::{self, SeriesOutcome};
-use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::settings::ConceptSpec;
 use tomcom_session::features::Feature;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
@@ -57,9 +57,10 @@ pub(super) struct OperateFlags {
     /// Who sends signals, instead of the session file's condition.
     #[arg(long, value_enum)]
     pub(super) condition: Option<ConditionArg>,
-    /// Communication concept of the assistant, instead of the session file's.
-    #[arg(long, value_parser = concept_parser())]
-    pub(super) concept: Option<ConceptName>,
+    /// Communication concept of the assistant, instead of the session file's: tom-com, tom, dev, none, or the command
+    /// line of a program of yours.
+    #[arg(long, value_parser = concept)]
+    pub(super) concept: Option<ConceptSpec>,
     /// Serve the wall display at this address instead of localhost; the page then asks for the pairing code that the
     /// console shows. An address without a port: the port is that of the session file.
     #[arg(long, value_name = "ADDRESS", value_parser = address_without_port)]
@@ -102,7 +103,7 @@ pub(super) fn new_session(
         gaze_file: flags.gaze_file.clone(),
         gaze_start_s: flags.gaze_start,
         condition: flags.condition.map(Condition::from),
-        concept: flags.concept,
+        concept: flags.concept.clone(),
         seed: flags.seed,
         listen: flags.listen,
         code: flags.code.clone(),

@@ -54,7 +54,9 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
         let found = "--condition wizard, with a session file whose wizard is a person".to_string();
         return Err(wrong_argument(&args.session, found, "[wizard] with kind = \"scripted\" in the session file"));
     }
-    files.spec.assistant.concept = args.concept.unwrap_or(files.spec.assistant.concept);
+    if let Some(concept) = &args.concept {
+        files.spec.assistant.concept = concept.clone();
+    }
     files.spec.robot.arm = args.arm.map_or(files.spec.robot.arm, ArmKind::from);
     files.spec.require_built().map_err(|missing| FileError::not_built(&args.session, missing))?;
     files.spec.assistant.shadow = if args.shadow { ShadowMode::On } else { ShadowMode::Off };

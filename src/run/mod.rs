@@ -3,6 +3,7 @@
 
 mod advisor_thread;
 pub mod ask;
+mod assistant_link;
 pub mod clock;
 pub mod comparison_thread;
 pub mod doctor;

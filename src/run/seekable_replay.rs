@@ -40,6 +40,7 @@ fn is_hidden(event: &Event) -> bool {
             | Event::OfferOpened(_)
             | Event::OfferClosed { .. }
             | Event::Advised(_)
+            | Event::External(_)
             | Event::Unblinded { .. }
             | Event::Marker { .. }
             | Event::MarkerWorded { .. }

@@ -113,6 +113,7 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
             session.note(now, TimelineEvent::Corrected { location });
         }
         Event::Advised(advice) => advise(session, advice.clone()),
+        Event::External(event) => session.external.apply(event),
         Event::OfferOpened(advice) => {
             session.offers.opens(stamped.seq, now, advice.clone());
             effects.push(SessionEffect::At { time: now + HOLD, timer: Timer::ReviewOffer });

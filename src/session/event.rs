@@ -5,6 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::external::ExternalEvent;
 use crate::gaze_check::GazeCheckEvent;
 use crate::preflight_checks::PreflightCheck;
 use crate::probes::ProbeEvent;
@@ -155,6 +156,8 @@ pub enum Event {
     },
     /// Refers to an earlier event if it was computed while the session continued.
     Advised(Recommendation),
+    /// From an external concept or participant.
+    External(ExternalEvent),
     OfferOpened(OfferedAdvice),
     OfferClosed {
         /// Sequence number of its `offer_opened`.

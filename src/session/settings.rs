@@ -7,12 +7,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::plan::{PlanPosition, PlanSpec};
 use crate::stream_settings::RerunSpec;
+use crate::study_arm::StudyArm;
 use crate::tracker::TrackerSpec;
 use crate::wall_display::DisplaySpec;
 use crate::{person_code, ranges};
 use tomcom_core::base::number_range::OutOfRange;
 use tomcom_core::communication::HighlightSet;
-use tomcom_core::communication::settings::{AssistantSpec, ShadowMode};
+use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::settings::{AssistantSpec, ConceptSpec, ExternalMind, ShadowMode};
 use tomcom_core::kitchen::{Kitchen, LocationId, LocationKind};
 use tomcom_core::mind::model::{HumanModel, HumanModelName};
 use tomcom_people::participant::population::Population;
@@ -88,8 +90,20 @@ impl SessionSpec {
             let found = format!("code = \"{code}\": {fault}");
             return Err(SettingError::new("participant.code", found, person_code::REMEDY));
         }
+        if let ConceptSpec::External(mind) = &self.assistant.concept
+            && mind.external.trim().is_empty()
+        {
+            let remedy = "the command line of a program, such as \"python my_agent.py\"";
+            return Err(SettingError::new("assistant.concept.external", "external = \"\"".to_string(), remedy));
+        }
         if let Some(plan) = &self.plan {
             plan.check()?;
+            let is_external = plan.conditions.contains(&StudyArm::External);
+            if is_external && self.assistant.concept != ConceptName::External {
+                let found = "the condition \"external\", and no external concept".to_string();
+                let remedy = "[assistant] with concept = { external = \"COMMAND\" }";
+                return Err(SettingError::new("plan.conditions", found, remedy));
+            }
             if self.wizard.kind == WizardKind::Person {
                 plan.check_visibility(self.console.visibility)?;
             }
@@ -157,6 +171,18 @@ impl SessionSpec {
             return wrong(format!("with {} twice", name.1), "each place once".to_string());
         }
         self.probes.as_ref().map_or(Ok(()), |probes| probes.check_kitchen(kitchen))
+    }
+
+    /// The external concept, if the session has one and asks it.
+    pub fn external_concept(&self) -> Option<&ExternalMind> {
+        match &self.assistant.concept {
+            ConceptSpec::External(mind) if self.asks_assistant() => Some(mind),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn has_external_mind(&self) -> bool {
+        self.external_concept().is_some()
     }
 
     /// In the assistant condition, and with `shadow = "on"`.

@@ -308,6 +308,7 @@ fn class(arm: StudyArm, method: SignificanceTestMethod) -> &'static str {
         (_, StudyArm::TomCom) => "tom-com",
         (_, StudyArm::Tom) => "tom",
         (_, StudyArm::Dev) => "dev",
+        (_, StudyArm::External) => "external",
     }
 }
 

@@ -288,7 +288,7 @@ fn signal_labels(spec: &SessionSpec, kitchen: &Kitchen) -> Vec<String> {
 
 /// Unit of the channels with the net benefit of signals: presses, or the deviation of beliefs.
 fn net_benefit_unit(spec: &SessionSpec) -> &'static str {
-    match spec.assistant.concept.unit() {
+    match spec.assistant.concept.name().unit() {
         BenefitUnit::Deviation => "probability",
         BenefitUnit::Presses | BenefitUnit::None => "presses",
     }
@@ -544,6 +544,8 @@ fn private_fields(event: &Event) -> &'static [&'static str] {
         Event::Marker { .. } | Event::MarkerWorded { .. } => &["note"],
         Event::TrialAborted { .. } | Event::TrialExcluded { .. } => &["reason"],
         Event::Preflight { .. } => &["checks"],
+        Event::External(_) => &["name", "found", "answer"],
+        Event::Advised(_) => &["words"],
         Event::Tracker(TrackerEvent::Connected { .. }) => &["device"],
         Event::Tracker(TrackerEvent::Lost { .. }) => &["reason"],
         Event::Tracker(TrackerEvent::OtherSurfaces { .. }) => &["names"],

@@ -142,7 +142,7 @@ impl PlanSpec {
         self.check_participants()?;
         let twice = |index: usize| self.conditions[..index].contains(&self.conditions[index]);
         if self.conditions.is_empty() {
-            let remedy = "one to six conditions, such as [\"none\", \"wizard\", \"tom-com\"]";
+            let remedy = "one to seven conditions, such as [\"none\", \"wizard\", \"tom-com\"]";
             return wrong("plan.conditions", "no conditions".to_string(), remedy);
         }
         if let Some(index) = (0..self.conditions.len()).find(|&index| twice(index)) {

@@ -162,6 +162,9 @@ pub struct SimulationSummary {
     pub simulated_s: f64,
     pub wall_s: f64,
     pub excluded: u64,
+    /// Trials that were aborted since an external mind failed, each with its reason.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub failed: Vec<String>,
     /// Number of complete recordings that already existed and were read instead of simulated anew.
     pub found: u64,
     /// New paths of logs that end within their header, as after a power failure; simulated anew.

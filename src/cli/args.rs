@@ -14,6 +14,7 @@ use super::output::OutputFormat;
 use super::pools::{ArmsArgs, PowerArgs};
 use super::review::ReviewArgs;
 use super::study::StudyArgs;
+use super::tournaments::{ProtocolArgs, TournamentArgs};
 use super::tutorial_alone::TutorialArgs;
 use super::wizard::{CompareArgs, TrainArgs};
 use tomcom_core::mind::fitting::HumanModelParameter;
@@ -44,6 +45,8 @@ pub(super) enum CliCommand {
     Simulate(SimulateArgs),
     Power(PowerArgs),
     Arms(ArmsArgs),
+    Tournament(TournamentArgs),
+    Protocol(ProtocolArgs),
     Study(StudyArgs),
     Plan(PlanArgs),
     Fit(FitArgs),

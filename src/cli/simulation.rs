@@ -22,11 +22,11 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     }
     let mut files = files::read_session(&args.session)?;
     let participant = &files.spec.participant;
-    let is_simulated = participant.kind == ParticipantKind::Simulated
+    let is_simulated = matches!(participant.kind, ParticipantKind::Simulated | ParticipantKind::External)
         && matches!(participant.gaze, GazeSource::Simulated | GazeSource::None);
     if files.spec.plan.is_none() && !is_simulated {
         let found = "a session whose participant or gaze is not simulated".to_string();
-        let remedy = "kind = \"simulated\", and gaze = \"simulated\" or \"none\"";
+        let remedy = "kind = \"simulated\" or \"external\", and gaze = \"simulated\" or \"none\"";
         return Err(wrong_argument(&args.session, found, remedy));
     }
     files.spec.seed = args.seed.unwrap_or(files.spec.seed);

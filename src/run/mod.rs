@@ -34,5 +34,6 @@ mod start_prompt;
 pub mod terminal;
 pub mod terminal_bytes;
 pub mod terminal_input;
+pub mod tournament;
 pub mod train;
 mod training_shell;

@@ -112,7 +112,9 @@ impl SettingOverrides {
         spec.tracker.file_start_s = self.gaze_start_s.unwrap_or(spec.tracker.file_start_s);
         let participant = &mut spec.participant;
         participant.code = self.code.unwrap_or(std::mem::take(&mut participant.code));
-        participant.kind = self.participant.unwrap_or(participant.kind);
+        if let Some(kind) = self.participant {
+            (participant.kind, participant.external) = (kind, None);
+        }
         let gaze = self.gaze.or(self.gaze_file.is_some().then_some(GazeSource::File));
         participant.gaze = match (gaze, self.participant, participant.gaze) {
             (Some(gaze), _, _) => gaze,

@@ -184,6 +184,7 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         Event::Protocol(event) => !matches!(event, ProtocolEvent::CriterionChecked { .. }),
         Event::SignalShown { by, .. } => *by == Sender::Wizard && !session.spec.scripts_wizard(),
         Event::SignalEnded { reason } => *reason == SignalEndReason::TakenBack,
+        Event::ParticipantBelieves(_) => participant.kind != ParticipantKind::Simulated,
         Event::Gaze(_) => !participant.simulates_gaze(),
         Event::Press { agent, .. } => *agent == Agent::Human && participant.kind != ParticipantKind::Simulated,
         Event::OrderShown { .. }
@@ -197,7 +198,6 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         | Event::RobotTouched { .. }
         | Event::OfferOpened(_)
         | Event::OfferClosed { .. }
-        | Event::ParticipantBelieves(_)
         | Event::BeliefEstimated(_) => false,
     }
 }

@@ -6,6 +6,7 @@ use std::str::FromStr;
 use crate::advisor::Advisor;
 use crate::engine::SessionEngine;
 use crate::external::link::{Exchange, WaitedConcept};
+use crate::external::participant::WaitedParticipant;
 use crate::external::{ExternalMinds, NoMinds};
 use crate::protocol::ProtocolEvent;
 use crate::{Event, TimestampedEvent, TrialPhase};
@@ -97,6 +98,14 @@ pub fn run_with<E>(
         }
         None => engine.session().spec.asks_assistant().then(|| Assistant::Own(Box::new(engine.advisor()))),
     };
+    let mut participant = match engine.session().spec.participant.external.clone() {
+        Some(command) => {
+            let (participant, outcome) = WaitedParticipant::open(engine.session(), &command, outside.minds);
+            take(engine, outcome, &mut record)?;
+            participant
+        }
+        None => None,
+    };
     let mut attendant = SimulatedRobotOperator::default();
     let mut time = AdviceTime::default();
     // Until the trial ends, a next event is always pending, since the end of the trial's time is one.
@@ -114,7 +123,21 @@ pub fn run_with<E>(
             time.total_ns += (outside.now_ns)().saturating_sub(began);
             take(engine, exchange, &mut record)?;
         }
-        attendant.step(engine).iter().try_for_each(&mut record)?;
+        if let Some(participant) = &mut participant {
+            take(engine, participant.look(engine.session(), outside.minds), &mut record)?;
+            let next = engine.next_due().unwrap_or(engine.session().time);
+            // A press that was due while the task stood still is made when it goes on.
+            if let Some(due) = participant.due().filter(|due| engine.session().is_running() && *due < next) {
+                let at = due.max(engine.session().time);
+                for event in participant.act(engine.session()) {
+                    engine.input(at, event).events.iter().try_for_each(&mut record)?;
+                }
+                continue;
+            }
+        }
+        if engine.session().phase == TrialPhase::Running || engine.session().is_frozen() {
+            attendant.step(engine).iter().try_for_each(&mut record)?;
+        }
     }
     let end = engine.session().time;
     engine.input(end, Event::SessionEnded).events.iter().try_for_each(&mut record)?;

@@ -90,6 +90,7 @@ impl SessionSpec {
             let found = format!("code = \"{code}\": {fault}");
             return Err(SettingError::new("participant.code", found, person_code::REMEDY));
         }
+        self.check_external_participant()?;
         if let ConceptSpec::External(mind) = &self.assistant.concept
             && mind.external.trim().is_empty()
         {
@@ -125,6 +126,20 @@ impl SessionSpec {
         match self.human.fault().or(population) {
             Some((path, found, remedy)) => Err(SettingError::new(path, found, remedy)),
             None => Ok(()),
+        }
+    }
+
+    fn check_external_participant(&self) -> Result<(), SettingError> {
+        let ParticipantSpec { kind, gaze, external, .. } = &self.participant;
+        let remedy = "kind = \"external\", external = \"COMMAND\" and gaze = \"none\" together";
+        let wrong = |found: &str| Err(SettingError::new("participant.external", found.to_string(), remedy));
+        match (*kind == ParticipantKind::External, external.as_deref().map(str::trim)) {
+            (false, None) => Ok(()),
+            (true, None | Some("")) => wrong("an external participant without a program"),
+            (false, Some(_)) => wrong("a program, and a participant who is not external"),
+            // A program has no eyes that could be followed.
+            (true, Some(_)) if *gaze != GazeSource::None => wrong("an external participant with gaze"),
+            (true, Some(_)) => Ok(()),
         }
     }
 
@@ -182,7 +197,7 @@ impl SessionSpec {
     }
 
     pub(crate) fn has_external_mind(&self) -> bool {
-        self.external_concept().is_some()
+        self.external_concept().is_some() || self.participant.kind == ParticipantKind::External
     }
 
     /// In the assistant condition, and with `shadow = "on"`.
@@ -322,6 +337,9 @@ pub struct ParticipantSpec {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub gaze_from: Vec<IpAddr>,
     pub gaze_senders: GazeSenders,
+    /// Command line or address of an external participant.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub external: Option<String>,
     /// `None` for the default population.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub population: Option<Population>,
@@ -338,6 +356,7 @@ impl Default for ParticipantSpec {
             gaze_listen: LOCALHOST,
             gaze_from: Vec::new(),
             gaze_senders: GazeSenders::First,
+            external: None,
             population: None,
         }
     }
@@ -358,6 +377,8 @@ pub enum ParticipantKind {
     Keyboard,
     /// A person at the wall display, which is a page in a browser.
     Display,
+    /// An external participant: the program that [`ParticipantSpec::external`] names.
+    External,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -256,6 +256,8 @@ impl ConceptDialogue {
 
     fn answer(&mut self, text: &str) -> Result<Vec<Event>, (MindFault, String)> {
         let malformed = |found: String| (MindFault::Malformed, recorded_text(&found));
+        // Whatever it says, it is not silent.
+        self.silent = None;
         let AnswerId { id } = serde_json::from_str(text).map_err(|error| malformed(format!("{error} in {text}")))?;
         if let Some(for_seq) = self.unanswered.remove(&id) {
             let (role, answer) = (MindRole::Concept, recorded_text(text));
@@ -264,7 +266,6 @@ impl ConceptDialogue {
         let Some(pending) = self.pending.take_if(|pending| pending.id == id) else {
             return Err((MindFault::Unasked, format!("an answer to question {id}")));
         };
-        self.silent = None;
         self.unanswered.clear();
         let answer: ConceptAnswer =
             serde_json::from_str(text).map_err(|error| malformed(format!("{error} in {text}")))?;

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::concept::{ConceptDialogue, DialogueOutcome};
-use super::{ExternalMinds, MindConnection, MindFault, MindNews, STARTS_WITHIN_S};
+use super::{ExternalEvent, ExternalMinds, MindConnection, MindFault, MindNews, STARTS_WITHIN_S};
 use crate::advisor::AdviceRequest;
 use crate::{Event, Session};
 use tomcom_core::communication::settings::ExternalMind;
@@ -48,28 +48,39 @@ impl WaitedConcept {
         self.exchange(question, wait_s, events)
     }
 
-    /// Sends a question and waits for its answer. An answer that cannot be used counts as silence.
+    /// Sends a question and waits for its answer. An answer that cannot be used counts as silence; what nobody asked for is
+    /// passed over.
     fn exchange(&mut self, question: String, wait_s: f64, mut events: Vec<Event>) -> Exchange {
         let Some(connection) = &mut self.connection else { return Exchange::default() };
-        let mut outcome = match connection.to.send(question) {
+        let wait = Duration::from_secs_f64(wait_s);
+        let mut news = match connection.to.send(question) {
+            Ok(()) => connection.from.receive(wait),
             // The program has more to say about its end than the pipe.
             Err(found) => match connection.from.receive(Duration::from_secs(1)) {
-                MindNews::Over(found) => self.dialogue.failed(MindFault::Ended, &found),
-                _ => self.dialogue.failed(MindFault::Ended, &found),
+                MindNews::Over(why) => MindNews::Over(why),
+                _ => MindNews::Over(found),
             },
-            Ok(()) => match connection.from.receive(Duration::from_secs_f64(wait_s)) {
+        };
+        let ends = loop {
+            let DialogueOutcome { events: mut told, ends } = match news {
                 MindNews::Line(text) => self.dialogue.take(&text),
                 MindNews::Nothing => {
-                    let found = format!("no answer within {wait_s} s");
-                    let silent = self.dialogue.failed(MindFault::Silent, &found);
+                    let silent = self.dialogue.failed(MindFault::Silent, &format!("no answer within {wait_s} s"));
                     DialogueOutcome { ends: true, ..silent }
                 }
                 MindNews::Over(found) => self.dialogue.failed(MindFault::Ended, &found),
-            },
+            };
+            let is_passed_over = told.iter().all(is_of_no_question);
+            events.append(&mut told);
+            if ends || !self.dialogue.has_begun() {
+                break true;
+            }
+            if !is_passed_over {
+                break false;
+            }
+            news = connection.from.receive(wait);
         };
-        outcome.ends |= !self.dialogue.has_begun();
-        events.append(&mut outcome.events);
-        let failed = outcome.ends.then(|| {
+        let failed = ends.then(|| {
             self.connection = None;
             let words = events.iter().rev().find_map(|event| match event {
                 Event::External(event) => event.words(),
@@ -79,4 +90,12 @@ impl WaitedConcept {
         });
         Exchange { events, failed }
     }
+}
+
+/// An answer to an earlier question, or to none: the present one still waits for its own.
+pub(super) fn is_of_no_question(event: &Event) -> bool {
+    matches!(
+        event,
+        Event::External(ExternalEvent::Late { .. } | ExternalEvent::Fault { fault: MindFault::Unasked, .. })
+    )
 }

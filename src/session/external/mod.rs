@@ -9,6 +9,7 @@ pub mod concept;
 pub mod happenings;
 pub mod kitchen_description;
 pub mod link;
+pub mod participant;
 
 use std::collections::BTreeMap;
 use std::fmt;

@@ -76,8 +76,9 @@ impl TrialFalseBeliefErrors {
     /// Errors from false beliefs in a session so far; `None` unless the beliefs before every press are known.
     fn from_follower(follower: &SessionFollower) -> Option<TrialFalseBeliefErrors> {
         let judged = &follower.judged;
-        let is_simulated = follower.session.spec.participant.kind == ParticipantKind::Simulated;
-        if !is_simulated || judged.iter().any(|press| !press.belief_known) {
+        let kind = follower.session.spec.participant.kind;
+        let is_told = matches!(kind, ParticipantKind::Simulated | ParticipantKind::External);
+        if !is_told || judged.iter().any(|press| !press.belief_known) {
             return None;
         }
         let count =

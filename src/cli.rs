@@ -25,6 +25,7 @@ mod rerun_messages;
 mod review;
 mod simulation;
 mod study;
+mod tournaments;
 mod tutorial_alone;
 mod wizard;
 
@@ -87,6 +88,8 @@ pub fn main() -> ExitCode {
         CliCommand::List(args) => list::list(&args),
         CliCommand::Power(args) => pools::power(&args),
         CliCommand::Arms(args) => pools::arms(&args),
+        CliCommand::Tournament(args) => tournaments::tournament(&args),
+        CliCommand::Protocol(_) => tournaments::protocol(),
         CliCommand::Simulate(args) => simulation::simulate(&args),
         CliCommand::Study(args) => study::study(&args),
         CliCommand::Plan(args) => show_plan(&args),

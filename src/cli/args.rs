@@ -1,11 +1,11 @@
 //! The commands of the program `tomcom` and their arguments.
 
 use std::path::PathBuf;
-use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::settings::ConceptSpec;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use super::choices::{ArmArg, SimulatedCondition, concept_parser};
+use super::choices::{ArmArg, SimulatedCondition, concept};
 use super::data::{CodesArgs, ForgetArgs};
 use super::exports::ExportArgs;
 use super::lab::NewArgs;
@@ -15,6 +15,7 @@ use super::output::OutputFormat;
 use super::pools::{ArmsArgs, PowerArgs};
 use super::review::ReviewArgs;
 use super::study::StudyArgs;
+use super::tournaments::{ProtocolArgs, TournamentArgs};
 use super::tutorial_alone::TutorialArgs;
 use super::wizard::{CompareArgs, TrainArgs};
 use tomcom_core::mind::fitting::HumanModelParameter;
@@ -46,6 +47,8 @@ pub(super) enum CliCommand {
     Simulate(SimulateArgs),
     Power(PowerArgs),
     Arms(ArmsArgs),
+    Tournament(TournamentArgs),
+    Protocol(ProtocolArgs),
     Study(StudyArgs),
     Plan(PlanArgs),
     Fit(FitArgs),
@@ -134,9 +137,10 @@ pub(super) struct SimulateArgs {
     /// Who sends signals: by default nobody, with a plan as the plan says.
     #[arg(long, value_enum)]
     pub(super) condition: Option<SimulatedCondition>,
-    /// Communication concept of the assistant, instead of the session file's.
-    #[arg(long, value_parser = concept_parser())]
-    pub(super) concept: Option<ConceptName>,
+    /// Communication concept of the assistant, instead of the session file's: tom-com, tom, dev, none, or the command
+    /// line of a program of yours.
+    #[arg(long, value_parser = concept)]
+    pub(super) concept: Option<ConceptSpec>,
     /// Kind of the robot's arm, instead of the session file's; "timed" is faster to simulate.
     #[arg(long, value_enum)]
     pub(super) arm: Option<ArmArg>,

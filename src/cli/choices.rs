@@ -4,6 +4,7 @@ use clap::ValueEnum;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::settings::{ConceptSpec, ExternalMind};
 use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -53,8 +54,22 @@ fn named<T: Copy + Send + Sync + 'static, const N: usize>(
         .try_map(move |name| values.into_iter().find(|value| entry(*value).0 == name).ok_or("no such name"))
 }
 
-pub(super) fn concept_parser() -> impl TypedValueParser<Value = ConceptName> {
-    named(ConceptName::ALL, |concept| (concept.name(), concept.entry().sends))
+/// Reads the name of a concept that can be asked about any recording.
+pub(super) fn own_concept_parser() -> impl TypedValueParser<Value = ConceptName> {
+    named(ConceptName::OWN, |concept| (concept.name(), concept.entry().sends))
+}
+
+/// Reads a concept's name, or the command line or address of an external concept.
+pub(super) fn concept(text: &str) -> Result<ConceptSpec, String> {
+    if let Some(name) = ConceptName::OWN.into_iter().find(|concept| concept.name() == text) {
+        return Ok(name.into());
+    }
+    // A mistyped name is no program.
+    if text.contains([' ', '/']) {
+        return Ok(ConceptSpec::External(ExternalMind::new(text)));
+    }
+    let names = ConceptName::OWN.map(ConceptName::name).join(", ");
+    Err(format!("wanted {names}, a command line such as \"python my_agent.py\", or tcp://127.0.0.1:PORT"))
 }
 
 pub(super) fn gaze_parser() -> impl TypedValueParser<Value = GazeSource> {

@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::choices::{ArmArg, ConditionArg, ParticipantArg, concept_parser, gaze_parser};
-use super::failure::{Failure, wrong_setting};
+use super::choices::{ArmArg, ConditionArg, ParticipantArg, concept, gaze_parser};
+use super::failure::{Failure, wrong_argument, wrong_setting};
 use super::lab::tell_carried;
 use super::output::{put, put_aside};
 use crate::run::files;
 use crate::run::options::{self, DEFAULT_SESSION, SeriesRequest, SessionStart, SettingOverrides};
 use crate::run::series::{self, SeriesOutcome};
-use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::settings::ConceptSpec;
 use tomcom_session::features::Feature;
 use tomcom_session::files::carried;
 use tomcom_session::files::file_error::FileError;
@@ -60,9 +60,10 @@ pub(super) struct OperateFlags {
     /// Who sends signals, instead of the session file's condition.
     #[arg(long, value_enum)]
     pub(super) condition: Option<ConditionArg>,
-    /// Communication concept of the assistant, instead of the session file's.
-    #[arg(long, value_parser = concept_parser())]
-    pub(super) concept: Option<ConceptName>,
+    /// Communication concept of the assistant, instead of the session file's: tom-com, tom, dev, none, or the command
+    /// line of a program of yours.
+    #[arg(long, value_parser = concept)]
+    pub(super) concept: Option<ConceptSpec>,
     /// Serve the wall display at this address instead of localhost; the page then asks for the pairing code that the
     /// console shows. An address without a port: the port is that of the session file.
     #[arg(long, value_name = "ADDRESS", value_parser = address_without_port)]
@@ -108,13 +109,17 @@ pub(super) fn new_session(
         gaze_file: flags.gaze_file.clone(),
         gaze_start_s: flags.gaze_start,
         condition: flags.condition.map(Condition::from),
-        concept: flags.concept,
+        concept: flags.concept.clone(),
         seed: flags.seed,
         listen: flags.listen,
         code: flags.code.clone(),
         rerun_listen: flags.rerun_listen.clone(),
     };
     overrides.apply(&mut files).map_err(wrong_setting)?;
+    if files.spec.participant.kind == ParticipantKind::External {
+        let found = "a session with an external participant".to_string();
+        return Err(wrong_argument(name, found, "tomcom simulate, or --participant with a person or a simulated one"));
+    }
     files.spec.require_built_live().map_err(|missing| FileError::not_built(name, missing))?;
     let out = flags.out.clone();
     if flags.code.is_none() && files.spec.plan.is_none() {

@@ -24,11 +24,11 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     let mut files = files::read_session(&args.session)?;
     tell_carried(&args.session, Some(&args.out));
     let participant = &files.spec.participant;
-    let is_simulated = participant.kind == ParticipantKind::Simulated
+    let is_simulated = matches!(participant.kind, ParticipantKind::Simulated | ParticipantKind::External)
         && matches!(participant.gaze, GazeSource::Simulated | GazeSource::None);
     if files.spec.plan.is_none() && !is_simulated {
         let found = "a session whose participant or gaze is not simulated".to_string();
-        let remedy = "kind = \"simulated\", and gaze = \"simulated\" or \"none\"";
+        let remedy = "kind = \"simulated\" or \"external\", and gaze = \"simulated\" or \"none\"";
         return Err(wrong_argument(&args.session, found, remedy));
     }
     files.spec.seed = args.seed.unwrap_or(files.spec.seed);
@@ -56,7 +56,9 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
         let found = "--condition wizard, with a session file whose wizard is a person".to_string();
         return Err(wrong_argument(&args.session, found, "[wizard] with kind = \"scripted\" in the session file"));
     }
-    files.spec.assistant.concept = args.concept.unwrap_or(files.spec.assistant.concept);
+    if let Some(concept) = &args.concept {
+        files.spec.assistant.concept = concept.clone();
+    }
     files.spec.robot.arm = args.arm.map_or(files.spec.robot.arm, ArmKind::from);
     files.spec.require_built().map_err(|missing| FileError::not_built(&args.session, missing))?;
     files.spec.assistant.shadow = if args.shadow { ShadowMode::On } else { ShadowMode::Off };

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::choices::concept_parser;
+use super::choices::own_concept_parser;
 use super::failure::Failure;
 use super::lab::tell_carried;
 use super::list::{chosen, each_chosen, exists, gathered};
@@ -40,10 +40,10 @@ pub(super) struct CompareArgs {
     #[arg(long)]
     follow: bool,
     /// Further concepts besides the session's own, separated by commas.
-    #[arg(long, value_parser = concept_parser(), value_delimiter = ',')]
+    #[arg(long, value_parser = own_concept_parser(), value_delimiter = ',')]
     with: Vec<ConceptName>,
     /// Show only these concepts; they are asked for advice, as with --with.
-    #[arg(long, value_parser = concept_parser(), value_delimiter = ',', conflicts_with = "follow")]
+    #[arg(long, value_parser = own_concept_parser(), value_delimiter = ',', conflicts_with = "follow")]
     only: Vec<ConceptName>,
     /// Window of a match, in presses of the human: communications further apart do not match.
     #[arg(long, default_value_t = WINDOW, value_parser = clap::value_parser!(u32).range(0..=100))]

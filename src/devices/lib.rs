@@ -1,6 +1,7 @@
 //! What a session has around it: eye trackers ([`pupil`], [`gaze_json`], [`lsl`], [`gaze_file`]), the participant's display
 //! ([`sight`]: what the page may see; `display`: the server with its page), and Rerun (`scene`: a session as entities;
-//! `rerun`, `stream`, `rrd`: viewers and files).
+//! `rerun`, `stream`, `rrd`: viewers and files), and programs that take the part of a concept or of the participant
+//! ([`external`]).
 //!
 //! The crate knows nothing of the console and of studies.
 
@@ -11,6 +12,7 @@ mod compared_clock;
 pub mod connection_table;
 #[cfg(feature = "display")]
 pub mod display;
+pub mod external;
 mod gaze_connection;
 pub mod gaze_file;
 mod gaze_gate;

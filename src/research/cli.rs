@@ -13,6 +13,7 @@ use serde::Serialize;
 use tomcom_core::base::text::count;
 use tomcom_core::base::text::printable_lines;
 use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::settings::ConceptSpec;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::files::{overwrite, read_session};
 use tomcom_session::headless::SimulationShard;
@@ -157,7 +158,7 @@ enum SenderArg {
 
 /// Reads the name of a communication concept.
 fn concept_parser() -> impl TypedValueParser<Value = ConceptName> {
-    let choices = ConceptName::ALL.map(|concept| PossibleValue::new(concept.name()).help(concept.entry().sends));
+    let choices = ConceptName::OWN.map(|concept| PossibleValue::new(concept.name()).help(concept.entry().sends));
     PossibleValuesParser::new(choices).try_map(|name| ConceptName::named(&name).ok_or("no concept"))
 }
 
@@ -420,7 +421,7 @@ fn sweep(args: SweepArgs) -> Result<(), Failure> {
         let found = "--condition wizard, with a session file whose wizard is a person".to_string();
         return Err(wrong_argument(&args.session, found, "[wizard] with kind = \"scripted\" in the session file"));
     }
-    spec.assistant.concept = args.concept.unwrap_or(spec.assistant.concept);
+    spec.assistant.concept = args.concept.map_or(spec.assistant.concept.clone(), ConceptSpec::from);
     spec.robot.arm = args.arm.map_or(spec.robot.arm, ArmKind::from);
     spec.require_built().map_err(|missing| FileError::not_built(&args.session, missing))?;
     let simulation = SimulationRequest { files, trials: args.trials, shard: args.shard, out: args.out };

@@ -298,7 +298,7 @@ mod tests {
     /// An offer of one signal that stands for 2 s from `opened_s` on and is outdone by another one.
     fn offer(opened_s: f64, used: Option<OfferUse>) -> TimedOffer {
         let what = OfferedCommunication::Signal(Signal::Highlight("counter".to_string()));
-        let advice = OfferedAdvice { what, for_seq: 1, worth: None, reason: None, visible: true };
+        let advice = OfferedAdvice { what, for_seq: 1, worth: None, reason: None, words: None, visible: true };
         let offer = Offer { seq: 2, opened: SessionTime::from_secs_f64(opened_s), advice, used };
         let reason = Some(OfferCloseReason::Replaced);
         TimedOffer { offer, opened_s, stood_s: Some(2.0), reason, sent: used.map(|used| used.at), reaction_s: None }

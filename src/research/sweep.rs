@@ -17,7 +17,7 @@ use tomcom_core::mind::fitting::HumanModelParameter;
 use tomcom_session::SessionSpec;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::files::overwrite;
-use tomcom_session::headless::SimulationShard;
+use tomcom_session::headless::{Outside, SimulationShard};
 use tomcom_session::log::RecordingError;
 use tomcom_session::log::RecordingWriteError;
 use tomcom_session::settings::{Condition, GazeSource};
@@ -299,7 +299,7 @@ fn grid(axes: &[ParameterSweepAxis]) -> Result<Vec<Cell>, RecordingError> {
 /// Refuses swept settings of a concept that the session does not use.
 fn check_axes(spec: &SessionSpec, axes: &[ParameterSweepAxis]) -> Result<(), RecordingError> {
     let decides = match spec.trial.condition {
-        Condition::Assistant => Some(spec.assistant.concept),
+        Condition::Assistant => Some(spec.assistant.concept.name()),
         Condition::Wizard | Condition::None => None,
     };
     let of = |knob: Knob| match knob {
@@ -347,7 +347,7 @@ fn of_cell(
     let kitchen = Arc::new(simulation.files.kitchen.kitchen.clone());
     let plan_lengths = plan_lengths(&kitchen, &mut CostToGo::new(kitchen.clone()));
     let (mut trials, mut sums, mut moved) = (Vec::new(), SimulationSums::default(), Vec::new());
-    each_trial(&simulation, done, |trial| {
+    each_trial(&simulation, Outside::NOTHING, done, |trial| {
         moved.extend(trial.moved.map(|log| log.display().to_string()));
         let TrialSummary { errors, human_actions, .. } = trial.figures;
         let related = trial.figures.beliefs.as_ref().map(|beliefs| beliefs.related);

@@ -42,14 +42,6 @@ impl AdvisorThreadHandle {
     }
 }
 
-/// Waits for the assistant's next recommendation; waits forever if the session has no assistant.
-pub async fn next_advice(advisor: &mut Option<AdvisorThreadHandle>) -> Option<Recommendation> {
-    match advisor {
-        Some(thread) => thread.answers.recv().await,
-        None => std::future::pending().await,
-    }
-}
-
 /// Waits for the next request for advice, and works ahead meanwhile if the session's settings say so; `None` once
 /// nobody can send requests any more.
 fn until_asked(

@@ -1,6 +1,7 @@
 //! Clocks of the program. Session time comes from the monotonic clock. The wall clock can be set and can jump; the
 //! program uses it only for names and headers of recordings, and records its jumps in the log.
 
+use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use tomcom_core::base::time::SessionTime;
@@ -10,6 +11,12 @@ use tomcom_session::files::WallTime;
 const STANDSTILL: Duration = Duration::from_secs(1);
 /// Least change of the difference between wall clock and session time that counts as a jump, in milliseconds.
 const JUMP_MS: i64 = 500;
+
+/// Time of the monotonic clock since its first reading, in nanoseconds.
+pub fn monotonic_ns() -> u64 {
+    static BEGAN: OnceLock<Instant> = OnceLock::new();
+    BEGAN.get_or_init(Instant::now).elapsed().as_nanos() as u64
+}
 
 /// Clock of a live session (session time). The clock stops while the program is suspended or blocked for more than a
 /// second, so that pending actions of robot and participant do not all happen at once afterwards.

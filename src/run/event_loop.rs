@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use tokio::time::{Instant, Interval, MissedTickBehavior, interval, sleep_until};
 
+use super::assistant_link::AssistantNews;
 use super::error::TerminalError;
 use super::operator_station::{OperatorStation, PageInput};
 use crate::console::lists::RecordingPicker;
@@ -14,7 +15,6 @@ use crate::console::lists::StartPrompt;
 use crate::console::view::theme::Theme;
 use crate::console::{ConsoleMessage, ConsoleModel};
 use crate::run::terminal::TerminalScreen;
-use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_devices::gaze_input::TrackerMessage;
 use tomcom_session::Session;
 
@@ -42,7 +42,7 @@ pub(super) enum LoopEvent {
     TargetDue,
     /// An input from the participant's page.
     Page(PageInput),
-    Advice(Box<Recommendation>),
+    Advice(Box<AssistantNews>),
     PointerTick,
     /// Files that other programs or this one extend are due to be read or flushed.
     FileTick,
@@ -97,8 +97,8 @@ pub(super) trait ConsoleShell {
         false
     }
 
-    /// Waits for the assistant's next recommendation; waits forever without an assistant.
-    async fn advice(&mut self) -> Option<Recommendation> {
+    /// Waits for whoever advises; waits forever without an assistant.
+    async fn advice(&mut self) -> Option<AssistantNews> {
         std::future::pending().await
     }
 

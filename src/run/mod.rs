@@ -3,6 +3,7 @@
 
 mod advisor_thread;
 pub mod ask;
+mod assistant_link;
 pub mod clock;
 pub mod comparison_thread;
 pub mod doctor;
@@ -33,5 +34,6 @@ mod start_prompt;
 pub mod terminal;
 pub mod terminal_bytes;
 pub mod terminal_input;
+pub mod tournament;
 pub mod train;
 mod training_shell;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::run::files;
-use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::settings::ConceptSpec;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_session::LogHeader;
 use tomcom_session::files::SessionSetup;
@@ -70,7 +70,7 @@ pub struct SettingOverrides {
     /// Condition of the trial: who may send signals.
     pub condition: Option<Condition>,
     /// The assistant's communication concept.
-    pub concept: Option<ConceptName>,
+    pub concept: Option<ConceptSpec>,
     /// Seed of all random numbers.
     pub seed: Option<u64>,
     /// The participant's pseudonymous code, such as P01.
@@ -96,7 +96,9 @@ impl SettingOverrides {
         spec.seed = self.seed.unwrap_or(spec.seed);
         spec.robot.arm = self.arm.unwrap_or(spec.robot.arm);
         spec.trial.condition = self.condition.unwrap_or(spec.trial.condition);
-        spec.assistant.concept = self.concept.unwrap_or(spec.assistant.concept);
+        if let Some(concept) = self.concept {
+            spec.assistant.concept = concept;
+        }
         spec.display.listen = self.listen.unwrap_or(spec.display.listen);
         if let Some(listen) = self.rerun_listen {
             spec.rerun.address = listen;
@@ -110,7 +112,9 @@ impl SettingOverrides {
         spec.tracker.file_start_s = self.gaze_start_s.unwrap_or(spec.tracker.file_start_s);
         let participant = &mut spec.participant;
         participant.code = self.code.unwrap_or(std::mem::take(&mut participant.code));
-        participant.kind = self.participant.unwrap_or(participant.kind);
+        if let Some(kind) = self.participant {
+            (participant.kind, participant.external) = (kind, None);
+        }
         let gaze = self.gaze.or(self.gaze_file.is_some().then_some(GazeSource::File));
         participant.gaze = match (gaze, self.participant, participant.gaze) {
             (Some(gaze), _, _) => gaze,

@@ -5,13 +5,15 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
+use super::clock::monotonic_ns;
 use super::leaving::ways_to_look;
 use super::options;
 use tomcom_core::base::text::count;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_devices::external::LocalMinds;
 use tomcom_session::files::file_error::FileError;
-use tomcom_session::headless::SimulationShard;
+use tomcom_session::headless::{Outside, SimulationShard};
 use tomcom_session::log::RecordingError;
 use tomcom_session::log::ruling;
 use tomcom_session::settings::{Condition, ParticipantSpec};
@@ -34,10 +36,16 @@ pub fn simulate(simulation: &SimulationRequest, done: impl Fn() + Sync) -> Resul
         &mut CostToGo::new(Arc::new(simulation.files.kitchen.kitchen.clone())),
     );
     let (mut excluded, mut found, mut recordings, mut moved) = (0, 0, Vec::new(), Vec::new());
-    each_trial(simulation, done, |trial| {
+    let outside = Outside { minds: &LocalMinds, now_ns: monotonic_ns };
+    let mut failed = Vec::new();
+    each_trial(simulation, outside, done, |trial| {
         moved.extend(trial.moved.map(|log| log.display().to_string()));
         recordings.push(trial.folder.clone().into());
         found += u64::from(trial.found);
+        if let Some(reason) = trial.failed {
+            failed.push(format!("{}: {reason}", trial.folder.display()));
+            return Ok(());
+        }
         // An existing recording can have been excluded from the analysis.
         match ruling(&trial.folder)?.is_some_and(|ruling| ruling.excluded) {
             true => excluded += 1,
@@ -46,7 +54,7 @@ pub fn simulate(simulation: &SimulationRequest, done: impl Fn() + Sync) -> Resul
         Ok(())
     })?;
     let wall_s = began.elapsed().as_secs_f64();
-    Ok(SimulationSummary { excluded, found, recordings, moved, wall_s, ..sums.figures() })
+    Ok(SimulationSummary { excluded, failed, found, recordings, moved, wall_s, ..sums.figures() })
 }
 
 /// Simulates a recording for wizard training: an unassisted trial of `seconds` in the default kitchen.
@@ -85,6 +93,13 @@ pub fn describe(figures: &SimulationSummary) -> String {
         some => format!(", {some} of them in an earlier run"),
     };
     let moved = describe_moved(&figures.moved);
+    let failed = match &figures.failed[..] {
+        [] => String::new(),
+        [first, ..] => {
+            let trials = count(figures.failed.len() as u64, "trial was aborted and is", "trials were aborted and are");
+            format!("{trials} left out of these numbers; the first, {first}\n")
+        }
+    };
     let offers = figures.offers.describe();
     let by_arm: String = match &figures.arms[..] {
         [] => String::new(),
@@ -103,7 +118,7 @@ pub fn describe(figures: &SimulationSummary) -> String {
          {}\n\
          {offers}\
          orders served: {}{each}\n\
-         {excluded}\
+         {excluded}{failed}\
          recordings:\n{}\n{look}",
         count(figures.trials, "trial", "trials"),
         figures.simulated_s,

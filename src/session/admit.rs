@@ -62,6 +62,7 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
             let is_there = |seq: u64| session.offers.find(seq).is_some_and(|offer| offer.signal() == Some(signal));
             refuse_if(offer.is_some_and(|seq| !is_there(seq)), "the event names an offer that was not the last one")
         }
+        Event::External(_) => unless(session.spec.has_external_mind(), "this session has no external mind"),
         Event::OfferOpened(_) => {
             refuse_if(phase != TrialPhase::Running, "no trial runs")?;
             refuse_if(session.offers.unclosed().is_some(), "an offer is open already")
@@ -170,6 +171,7 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         | Event::MarkerWorded { .. }
         | Event::ClockJumped { .. }
         | Event::Advised(_)
+        | Event::External(_)
         | Event::Tracker(_)
         | Event::SessionEnded => true,
         Event::Calibration(event) => event.is_external(),
@@ -182,6 +184,7 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         Event::Protocol(event) => !matches!(event, ProtocolEvent::CriterionChecked { .. }),
         Event::SignalShown { by, .. } => *by == Sender::Wizard && !session.spec.scripts_wizard(),
         Event::SignalEnded { reason } => *reason == SignalEndReason::TakenBack,
+        Event::ParticipantBelieves(_) => participant.kind != ParticipantKind::Simulated,
         Event::Gaze(_) => !participant.simulates_gaze(),
         Event::Press { agent, .. } => *agent == Agent::Human && participant.kind != ParticipantKind::Simulated,
         Event::OrderShown { .. }
@@ -195,7 +198,6 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         | Event::RobotTouched { .. }
         | Event::OfferOpened(_)
         | Event::OfferClosed { .. }
-        | Event::ParticipantBelieves(_)
         | Event::BeliefEstimated(_) => false,
     }
 }

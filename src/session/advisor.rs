@@ -1,5 +1,6 @@
 //! The assistant of a session: when it is asked for advice, with what, and its answer.
 
+use crate::external::happenings::{Happening, Happenings};
 use crate::follower::SessionFollower;
 use crate::{Event, Session};
 use tomcom_core::base::time::SessionTime;
@@ -28,6 +29,10 @@ pub struct AdviceRequest {
     signals: Vec<Signal>,
     /// Sequence number of the human's last press, if that press was an error.
     error: Option<u64>,
+    /// The trial's clock, in seconds.
+    pub(crate) clock_s: f64,
+    /// What happened since the last request, for an external concept; empty without one.
+    pub(crate) since: Vec<Happening>,
 }
 
 impl AdviceRequest {
@@ -48,7 +53,23 @@ impl AdviceRequest {
         let changed = session.changed_at(time).map(AspectId::of_location).collect();
         let presses = session.all_presses();
         let forecast = follower.filter.forecast();
-        AdviceRequest { seq, time, presses, state, belief, changed, robot, robot_press_s, forecast, signals, error }
+        let clock_s = session.trial_clock(time).as_secs_f64();
+        let since = follower.happenings.as_mut().map(Happenings::take).unwrap_or_default();
+        AdviceRequest {
+            seq,
+            time,
+            presses,
+            state,
+            belief,
+            changed,
+            robot,
+            robot_press_s,
+            forecast,
+            signals,
+            error,
+            clock_s,
+            since,
+        }
     }
 
     pub fn moment(&self) -> DecisionPoint<'_> {
@@ -64,6 +85,7 @@ impl AdviceRequest {
             forecast,
             ref signals,
             error,
+            ..
         } = *self;
         let situation = Situation { state, belief, changed, robot, robot_press_s, forecast };
         DecisionPoint { seq, time, presses, situation, signals, error }
@@ -84,7 +106,7 @@ pub struct Advisor {
 
 impl Advisor {
     pub fn new(session: &Session, cost: CostToGo) -> Advisor {
-        Advisor::by(session.spec.assistant.concept, session, cost)
+        Advisor::by(session.spec.assistant.concept.name(), session, cost)
     }
 
     pub fn by(name: ConceptName, session: &Session, cost: CostToGo) -> Advisor {

@@ -118,6 +118,7 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
             session.note_event(now, &stamped.event);
         }
         Event::Advised(advice) => advise(session, advice.clone()),
+        Event::External(event) => session.external.apply(event),
         Event::OfferOpened(advice) => {
             session.offers.opens(stamped.seq, now, advice.clone());
             effects.push(SessionEffect::At { time: now + HOLD, timer: Timer::ReviewOffer });

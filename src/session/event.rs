@@ -5,6 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::external::ExternalEvent;
 use crate::gaze_check::GazeCheckEvent;
 use crate::preflight_checks::PreflightCheck;
 use crate::probes::ProbeEvent;
@@ -156,6 +157,8 @@ pub enum Event {
     },
     /// Refers to an earlier event if it was computed while the session continued.
     Advised(Recommendation),
+    /// From an external concept or participant.
+    External(ExternalEvent),
     OfferOpened(OfferedAdvice),
     OfferClosed {
         /// Sequence number of its `offer_opened`.
@@ -223,6 +226,7 @@ impl Event {
                 | Event::OfferOpened(_)
                 | Event::OfferClosed { .. }
                 | Event::Advised(_)
+                | Event::External(_)
                 | Event::Unblinded { .. }
                 | Event::Marker { .. }
                 | Event::MarkerWorded { .. }
@@ -236,6 +240,8 @@ impl Event {
             Event::Marker { .. } | Event::MarkerWorded { .. } => &["note"],
             Event::TrialAborted { .. } | Event::TrialExcluded { .. } => &["reason"],
             Event::Preflight { .. } => &["checks"],
+            Event::External(_) => &["name", "found", "answer"],
+            Event::Advised(_) => &["words"],
             Event::Tracker(TrackerEvent::Connected { .. }) => &["device"],
             Event::Tracker(TrackerEvent::Lost { .. }) => &["reason"],
             Event::Tracker(TrackerEvent::OtherSurfaces { .. }) => &["names"],
@@ -306,6 +312,7 @@ pub const MEANINGS: &[(&str, &str)] = &[
     ("calibration", "A step of the gaze accuracy check"),
     ("clock_jumped", "The wall clock moved against session time: the computer stood still, or its clock was set"),
     ("display", "A report of the participant's display"),
+    ("external", "An external concept or participant began, told its belief, was late, or made a fault"),
     ("focus_lost", "The wizard's terminal lost the keyboard"),
     ("focus_regained", "The wizard's terminal has the keyboard again"),
     ("human_waits", "The participant has not pressed for unusually long by its own intervals"),

@@ -83,7 +83,7 @@ impl SessionSpec {
         self.require_built()?;
         match self.participant.kind {
             ParticipantKind::Display => Feature::Display.require(),
-            ParticipantKind::Keyboard | ParticipantKind::Simulated => Ok(()),
+            ParticipantKind::Keyboard | ParticipantKind::Simulated | ParticipantKind::External => Ok(()),
         }
     }
 }

@@ -2,6 +2,7 @@
 //! Live sessions and replays derive these with the same code.
 
 use crate::apply::{ApplyError, apply};
+use crate::external::happenings::Happenings;
 use crate::probes::{ProbeEvent, ProbeSubject, StartedProbe};
 use crate::tracker::TrackerEvent;
 use crate::wizard_log::WizardLog;
@@ -50,6 +51,8 @@ pub struct SessionFollower {
     pub estimated: Option<PressBeliefEstimate>,
     /// At the beginning of the last freeze probe.
     pub probed: Option<ProbedEstimate>,
+    /// What the next question tells an external concept; `None` without one.
+    pub(crate) happenings: Option<Happenings>,
 }
 
 /// The belief estimate when the task stopped for a freeze probe.
@@ -101,6 +104,7 @@ impl SessionFollower {
         let judge = PressJudge::new(kitchen.clone());
         let attributor = ErrorAttributor::new(spec.human.decision.clone(), seed);
         let filter = BeliefFilter::new(kitchen, spec.human.clone(), seed);
+        let happenings = session.spec.external_concept().map(|_| Happenings::default());
         let (judged, episodes) = (Vec::new(), FalseBeliefTracker::default());
         let (timing, belief, told_cause, estimated, finds_causes) = (None, None, None, None, true);
         let repeats = SignalRepeatRule::default();
@@ -122,6 +126,7 @@ impl SessionFollower {
             estimates: true,
             estimated,
             probed: None,
+            happenings,
         }
     }
 
@@ -165,6 +170,10 @@ impl SessionFollower {
         }
         if let Some(pause) = self.session.probe_pause(stamped) {
             self.judge.postpone(pause);
+        }
+        if let Some(happenings) = &mut self.happenings {
+            let judged = self.judged.last().filter(|press| press.seq == stamped.seq);
+            happenings.note(&self.session, stamped, &applied.change, judged);
         }
         self.estimate(stamped, &applied.change);
         Ok(applied)

@@ -3,7 +3,11 @@
 
 use std::str::FromStr;
 
+use crate::advisor::Advisor;
 use crate::engine::SessionEngine;
+use crate::external::link::{Exchange, WaitedConcept};
+use crate::external::participant::WaitedParticipant;
+use crate::external::{ExternalMinds, NoMinds};
 use crate::protocol::ProtocolEvent;
 use crate::{Event, TimestampedEvent, TrialPhase};
 use tomcom_core::base::time::SessionTime;
@@ -30,27 +34,114 @@ impl SimulatedRobotOperator {
     }
 }
 
+/// Computing time of a trial's assistant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AdviceTime {
+    pub questions: u64,
+    pub total_ns: u64,
+}
+
+/// What a run without a console takes from outside.
+#[derive(Clone, Copy, Debug)]
+pub struct Outside<'a> {
+    pub minds: &'a dyn ExternalMinds,
+    /// A monotonic clock, by which computing times are measured.
+    pub now_ns: fn() -> u64,
+}
+
+impl Outside<'_> {
+    /// Nothing: no programs, no computing times.
+    pub const NOTHING: Outside<'static> = Outside { minds: &NoMinds, now_ns: || 0 };
+}
+
+/// Who answers requests for advice.
+enum Assistant {
+    Own(Box<Advisor>),
+    External(Box<WaitedConcept>),
+}
+
+/// Puts into the session what came back; aborts the trial if nothing more can come.
+fn take<E>(
+    engine: &mut SessionEngine,
+    exchange: Exchange,
+    mut record: impl FnMut(&TimestampedEvent) -> Result<(), E>,
+) -> Result<(), E> {
+    let aborted = exchange.failed.map(|reason| Event::TrialAborted { reason });
+    for event in exchange.events.into_iter().chain(aborted) {
+        engine.input(engine.session().time, event).events.iter().try_for_each(&mut record)?;
+    }
+    Ok(())
+}
+
 /// Runs a session of one trial and passes every event to `record`, until its first error.
-pub fn run<E>(engine: &mut SessionEngine, mut record: impl FnMut(&TimestampedEvent) -> Result<(), E>) -> Result<(), E> {
-    let mut advisor = engine.session().spec.asks_assistant().then(|| engine.advisor());
+pub fn run<E>(engine: &mut SessionEngine, record: impl FnMut(&TimestampedEvent) -> Result<(), E>) -> Result<(), E> {
+    run_with(engine, Outside::NOTHING, record).map(drop)
+}
+
+/// As [`run`], with programs of other people: an answer is waited for, and a trial whose program does not answer in time or
+/// ends is aborted.
+pub fn run_with<E>(
+    engine: &mut SessionEngine,
+    outside: Outside,
+    mut record: impl FnMut(&TimestampedEvent) -> Result<(), E>,
+) -> Result<AdviceTime, E> {
     if let Some(phase) = engine.session().next_phase() {
         let event = Event::Protocol(ProtocolEvent::PhaseStarted { phase, number: 1 });
         engine.input(SessionTime::ZERO, event).events.iter().try_for_each(&mut record)?;
     }
     engine.input(SessionTime::ZERO, Event::TrialStarted).events.iter().try_for_each(&mut record)?;
+    let mut assistant = match engine.session().spec.external_concept().cloned() {
+        Some(mind) => {
+            let (concept, exchange) = WaitedConcept::open(engine.session(), &mind, outside.minds);
+            take(engine, exchange, &mut record)?;
+            Some(Assistant::External(Box::new(concept)))
+        }
+        None => engine.session().spec.asks_assistant().then(|| Assistant::Own(Box::new(engine.advisor()))),
+    };
+    let mut participant = match engine.session().spec.participant.external.clone() {
+        Some(command) => {
+            let (participant, outcome) = WaitedParticipant::open(engine.session(), &command, outside.minds);
+            take(engine, outcome, &mut record)?;
+            participant
+        }
+        None => None,
+    };
     let mut attendant = SimulatedRobotOperator::default();
+    let mut time = AdviceTime::default();
     // Until the trial ends, a next event is always pending, since the end of the trial's time is one.
     while engine.session().phase == TrialPhase::Running || engine.session().is_frozen() {
         for question in engine.take_questions() {
-            if let Some(advisor) = &mut advisor {
-                let advice = Event::Advised(advisor.answer(&question));
-                engine.input(engine.session().time, advice).events.iter().try_for_each(&mut record)?;
+            let Some(assistant) = &mut assistant else { continue };
+            let began = (outside.now_ns)();
+            let exchange = match assistant {
+                Assistant::Own(advisor) => {
+                    Exchange { events: vec![Event::Advised(advisor.answer(&question))], failed: None }
+                }
+                Assistant::External(concept) => concept.ask(&question),
+            };
+            time.questions += 1;
+            time.total_ns += (outside.now_ns)().saturating_sub(began);
+            take(engine, exchange, &mut record)?;
+        }
+        if let Some(participant) = &mut participant {
+            take(engine, participant.look(engine.session(), outside.minds), &mut record)?;
+            let next = engine.next_due().unwrap_or(engine.session().time);
+            // A press that was due while the task stood still is made when it goes on.
+            if let Some(due) = participant.due().filter(|due| engine.session().is_running() && *due < next) {
+                let at = due.max(engine.session().time);
+                for event in participant.act(engine.session()) {
+                    engine.input(at, event).events.iter().try_for_each(&mut record)?;
+                }
+                continue;
             }
         }
-        attendant.step(engine).iter().try_for_each(&mut record)?;
+        if engine.session().phase == TrialPhase::Running || engine.session().is_frozen() {
+            attendant.step(engine).iter().try_for_each(&mut record)?;
+        }
     }
     let end = engine.session().time;
-    engine.input(end, Event::SessionEnded).events.iter().try_for_each(&mut record)
+    engine.input(end, Event::SessionEnded).events.iter().try_for_each(&mut record)?;
+    Ok(time)
 }
 
 const MAX_SHARDS: u64 = 100_000;

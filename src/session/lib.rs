@@ -6,6 +6,7 @@
 //! - Events and state: [`event`], `session_state`, [`header`].
 //! - Preconditions and effects of events: [`admit`] and [`mod@apply`]; of one feature each: [`gaze_check`],
 //!   [`gaze_samples`], [`protocol`], [`tutorial`], [`probes`] with [`probe_settings`] and [`probe_sampling`], [`offers`], [`proposals`].
+//! - Concepts and participants of other people, which answer over a connection: [`external`].
 //! - What runs and reads sessions: [`engine`], [`headless`], [`log`], [`files`], [`replay`], [`verify`].
 //! - What is computed beside a session: [`follower`] (judgements, the belief estimate), [`advisor`] (advice), [`watcher`]
 //!   (advice that other senders would have given), [`history`] (words and series), [`wizard_log`].
@@ -18,6 +19,7 @@ pub mod apply;
 pub mod engine;
 pub mod error_list;
 pub mod event;
+pub mod external;
 pub mod features;
 pub mod files;
 pub mod follower;

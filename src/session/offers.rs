@@ -64,9 +64,16 @@ fn outdone(session: &Session, offer: &Offer, advice: &Recommendation) -> Option<
             };
         }
     };
+    if offer.advice.worth.is_none() && advice.options.is_empty() {
+        // An external concept that names a signal without its value.
+        return match &advice.best {
+            None => Some(OfferCloseReason::Fell),
+            Some(best) => (best != signal).then_some(OfferCloseReason::Replaced),
+        };
+    }
     // A signal that is not in the recommendation's list has no net benefit that could close the offer.
     let net = advice.options.iter().find(|option| option.signal == *signal)?.net;
-    let thresholds = OfferCloseThresholds::for_concept(session.spec.assistant.concept);
+    let thresholds = OfferCloseThresholds::for_concept(session.spec.assistant.concept.name());
     if net < thresholds.closes_below {
         return Some(OfferCloseReason::Fell);
     }
@@ -88,14 +95,24 @@ fn opening(session: &Session, now: SessionTime) -> Option<OfferedAdvice> {
     let (for_seq, visible) = (advice.for_seq, is_visible(session));
     if let Some(proposal) = &advice.proposal {
         let what = OfferedCommunication::Presses(proposal.presses.clone());
-        return Some(OfferedAdvice { what, for_seq, worth: None, reason: None, visible });
+        let words = advice.words.clone();
+        return Some(OfferedAdvice { what, for_seq, worth: None, reason: None, words, visible });
+    }
+    if advice.options.is_empty() {
+        // An external concept that names a signal without its value.
+        let signal = advice.best.as_ref()?;
+        let is_possible = unavailable(&session.kitchen, session.state, signal).is_none();
+        let (what, words) = (OfferedCommunication::Signal(signal.clone()), advice.words.clone());
+        return is_possible.then_some(OfferedAdvice { what, for_seq, worth: None, reason: None, words, visible });
     }
     let option = candidate(session, advice)?;
     let SignalOption { benefit, standard_error, net, .. } = *option;
     let worth = Some(OfferWorth { benefit, standard_error, net });
     // The recommendation gives a reason for its best signal only.
-    let reason = advice.reason.clone().filter(|_| advice.best.as_ref() == Some(&option.signal));
-    Some(OfferedAdvice { what: OfferedCommunication::Signal(option.signal.clone()), for_seq, worth, reason, visible })
+    let is_best = advice.best.as_ref() == Some(&option.signal);
+    let (reason, words) = (advice.reason.clone().filter(|_| is_best), advice.words.clone().filter(|_| is_best));
+    let what = OfferedCommunication::Signal(option.signal.clone());
+    Some(OfferedAdvice { what, for_seq, worth, reason, words, visible })
 }
 
 /// Whether a wizard could see an offer that opens now: a console shows it or a script reads it.

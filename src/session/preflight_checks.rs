@@ -120,6 +120,7 @@ pub fn participant(
         ParticipantKind::Simulated => "simulated",
         ParticipantKind::Keyboard => "at this keyboard",
         ParticipantKind::Display => "at the wall display",
+        ParticipantKind::External => "a program",
     };
     let mut checks: Vec<PreflightCheck> = condition(session).into_iter().collect();
     checks.push(PreflightCheck::ok("participant", format!("{}, {who}", spec.code)));

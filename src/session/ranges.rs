@@ -36,7 +36,7 @@ const LONGEST: &str = "no trial is longer than a day";
 /// The largest number of 32 bits: practically no limit.
 const COUNT: f64 = 4_294_967_295.0;
 
-const OF_TRIALS: [NumberRange; 51] = [
+const OF_TRIALS: [NumberRange; 52] = [
     NumberRange::whole(
         "seed",
         [0.0, 9_007_199_254_740_991.0],
@@ -77,6 +77,12 @@ const OF_TRIALS: [NumberRange; 51] = [
         [0.0, 1_000.0],
         "presses",
         "no signal saves as many presses as the largest cost",
+    ),
+    NumberRange::real(
+        "assistant.concept.wait_s",
+        [0.05, 3_600.0],
+        SECONDS,
+        "a program needs some time to answer, and nobody waits for hours",
     ),
     NumberRange::real(
         "assistant.belief_threshold",

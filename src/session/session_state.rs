@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::event::{Event, TrialEndReason};
+use crate::external::ExternalStatus;
 use crate::gaze_check::{AcceptedGazeCheck, RunningGazeCheck};
 use crate::probes::TrialProbes;
 use crate::protocol::StudyProtocolState;
@@ -54,6 +55,8 @@ pub struct Session {
     /// The latest in the running trial.
     pub advice: Option<Recommendation>,
     pub offers: OfferHistory,
+    /// Of the external minds, if the session has any.
+    pub external: ExternalStatus,
     /// Whether a console shows the session to a person.
     pub has_console: bool,
     /// The latest event for which the participant's display flashes (trial start, signal).
@@ -137,6 +140,7 @@ impl Session {
             shown: None,
             advice: None,
             offers: OfferHistory::default(),
+            external: ExternalStatus::default(),
             has_console: false,
             cue: None,
             signalled_at: None,
@@ -224,7 +228,7 @@ impl Session {
     }
 
     fn arm_of_settings(&self, saw_advice: bool) -> StudyArm {
-        StudyArm::from_settings(self.spec.trial.condition, self.spec.assistant.concept, saw_advice)
+        StudyArm::from_settings(self.spec.trial.condition, self.spec.assistant.concept.name(), saw_advice)
     }
 
     /// Of both agents in the trial.

@@ -7,12 +7,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::plan::{PlanPosition, PlanSpec};
 use crate::stream_settings::RerunSpec;
+use crate::study_arm::StudyArm;
 use crate::tracker::TrackerSpec;
 use crate::wall_display::DisplaySpec;
 use crate::{person_code, ranges};
 use tomcom_core::base::number_range::OutOfRange;
 use tomcom_core::communication::HighlightSet;
-use tomcom_core::communication::settings::{AssistantSpec, ShadowMode};
+use tomcom_core::communication::concept::ConceptName;
+use tomcom_core::communication::settings::{AssistantSpec, ConceptSpec, ExternalMind, ShadowMode};
 use tomcom_core::kitchen::{Kitchen, LocationId, LocationKind};
 use tomcom_core::mind::model::{HumanModel, HumanModelName};
 use tomcom_people::participant::population::Population;
@@ -88,8 +90,21 @@ impl SessionSpec {
             let found = format!("code = \"{code}\": {fault}");
             return Err(SettingError::new("participant.code", found, person_code::REMEDY));
         }
+        self.check_external_participant()?;
+        if let ConceptSpec::External(mind) = &self.assistant.concept
+            && mind.external.trim().is_empty()
+        {
+            let remedy = "the command line of a program, such as \"python my_agent.py\"";
+            return Err(SettingError::new("assistant.concept.external", "external = \"\"".to_string(), remedy));
+        }
         if let Some(plan) = &self.plan {
             plan.check()?;
+            let is_external = plan.conditions.contains(&StudyArm::External);
+            if is_external && self.assistant.concept != ConceptName::External {
+                let found = "the condition \"external\", and no external concept".to_string();
+                let remedy = "[assistant] with concept = { external = \"COMMAND\" }";
+                return Err(SettingError::new("plan.conditions", found, remedy));
+            }
             if self.wizard.kind == WizardKind::Person {
                 plan.check_visibility(self.console.visibility)?;
             }
@@ -111,6 +126,20 @@ impl SessionSpec {
         match self.human.fault().or(population) {
             Some((path, found, remedy)) => Err(SettingError::new(path, found, remedy)),
             None => Ok(()),
+        }
+    }
+
+    fn check_external_participant(&self) -> Result<(), SettingError> {
+        let ParticipantSpec { kind, gaze, external, .. } = &self.participant;
+        let remedy = "kind = \"external\", external = \"COMMAND\" and gaze = \"none\" together";
+        let wrong = |found: &str| Err(SettingError::new("participant.external", found.to_string(), remedy));
+        match (*kind == ParticipantKind::External, external.as_deref().map(str::trim)) {
+            (false, None) => Ok(()),
+            (true, None | Some("")) => wrong("an external participant without a program"),
+            (false, Some(_)) => wrong("a program, and a participant who is not external"),
+            // A program has no eyes that could be followed.
+            (true, Some(_)) if *gaze != GazeSource::None => wrong("an external participant with gaze"),
+            (true, Some(_)) => Ok(()),
         }
     }
 
@@ -157,6 +186,18 @@ impl SessionSpec {
             return wrong(format!("with {} twice", name.1), "each place once".to_string());
         }
         self.probes.as_ref().map_or(Ok(()), |probes| probes.check_kitchen(kitchen))
+    }
+
+    /// The external concept, if the session has one and asks it.
+    pub fn external_concept(&self) -> Option<&ExternalMind> {
+        match &self.assistant.concept {
+            ConceptSpec::External(mind) if self.asks_assistant() => Some(mind),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn has_external_mind(&self) -> bool {
+        self.external_concept().is_some() || self.participant.kind == ParticipantKind::External
     }
 
     /// In the assistant condition, and with `shadow = "on"`.
@@ -296,6 +337,9 @@ pub struct ParticipantSpec {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub gaze_from: Vec<IpAddr>,
     pub gaze_senders: GazeSenders,
+    /// Command line or address of an external participant.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub external: Option<String>,
     /// `None` for the default population.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub population: Option<Population>,
@@ -312,6 +356,7 @@ impl Default for ParticipantSpec {
             gaze_listen: LOCALHOST,
             gaze_from: Vec::new(),
             gaze_senders: GazeSenders::First,
+            external: None,
             population: None,
         }
     }
@@ -332,6 +377,8 @@ pub enum ParticipantKind {
     Keyboard,
     /// A person at the wall display, which is a page in a browser.
     Display,
+    /// An external participant: the program that [`ParticipantSpec::external`] names.
+    External,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

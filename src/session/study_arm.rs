@@ -27,12 +27,21 @@ pub enum StudyArm {
     Tom,
     /// The assistant proposes the next presses after an error.
     Dev,
+    /// The assistant sends the signals of an external concept.
+    External,
 }
 
 impl StudyArm {
     /// In the order of tables.
-    pub const ALL: [StudyArm; 6] =
-        [StudyArm::None, StudyArm::Wizard, StudyArm::WizardWithAdvice, StudyArm::TomCom, StudyArm::Tom, StudyArm::Dev];
+    pub const ALL: [StudyArm; 7] = [
+        StudyArm::None,
+        StudyArm::Wizard,
+        StudyArm::WizardWithAdvice,
+        StudyArm::TomCom,
+        StudyArm::Tom,
+        StudyArm::Dev,
+        StudyArm::External,
+    ];
 
     /// In files.
     pub fn name(self) -> &'static str {
@@ -41,43 +50,44 @@ impl StudyArm {
 
     /// In texts.
     pub fn title(self) -> &'static str {
-        match self {
-            StudyArm::None => "unassisted",
-            StudyArm::Wizard => "wizard",
-            StudyArm::WizardWithAdvice => "wizard with advice",
-            StudyArm::TomCom => "ToM-Com",
-            StudyArm::Tom => "ToM",
-            StudyArm::Dev => "DEV",
+        match (self.concept(), self) {
+            (Some(concept), _) => concept.title(),
+            (None, StudyArm::Wizard) => "wizard",
+            (None, StudyArm::WizardWithAdvice) => "wizard with advice",
+            (None, _) => "unassisted",
         }
     }
 
     pub fn condition(self) -> Condition {
-        match self {
-            StudyArm::None => Condition::None,
-            StudyArm::Wizard | StudyArm::WizardWithAdvice => Condition::Wizard,
-            StudyArm::TomCom | StudyArm::Tom | StudyArm::Dev => Condition::Assistant,
+        match (self.concept(), self) {
+            (Some(_), _) => Condition::Assistant,
+            (None, StudyArm::Wizard | StudyArm::WizardWithAdvice) => Condition::Wizard,
+            (None, _) => Condition::None,
         }
     }
 
-    /// `None` without an assistant.
+    /// The concept by which the assistant sends signals: title and condition of such an arm follow. `None` without an
+    /// assistant.
     pub fn concept(self) -> Option<ConceptName> {
         match self {
             StudyArm::None | StudyArm::Wizard | StudyArm::WizardWithAdvice => None,
             StudyArm::TomCom => Some(ConceptName::TomCom),
             StudyArm::Tom => Some(ConceptName::Tom),
             StudyArm::Dev => Some(ConceptName::Dev),
+            StudyArm::External => Some(ConceptName::External),
         }
     }
 
     /// `saw_advice`: whether the wizard saw recommendations.
     pub fn from_settings(condition: Condition, concept: ConceptName, saw_advice: bool) -> StudyArm {
-        match (condition, concept) {
-            (Condition::None, _) | (Condition::Assistant, ConceptName::None) => StudyArm::None,
-            (Condition::Wizard, _) if saw_advice => StudyArm::WizardWithAdvice,
-            (Condition::Wizard, _) => StudyArm::Wizard,
-            (Condition::Assistant, ConceptName::TomCom) => StudyArm::TomCom,
-            (Condition::Assistant, ConceptName::Tom) => StudyArm::Tom,
-            (Condition::Assistant, ConceptName::Dev) => StudyArm::Dev,
+        match condition {
+            Condition::None => StudyArm::None,
+            Condition::Wizard if saw_advice => StudyArm::WizardWithAdvice,
+            Condition::Wizard => StudyArm::Wizard,
+            // The concept that sends nothing has no arm of its own.
+            Condition::Assistant => {
+                StudyArm::ALL.into_iter().find(|arm| arm.concept() == Some(concept)).unwrap_or_default()
+            }
         }
     }
 }

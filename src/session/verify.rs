@@ -75,7 +75,9 @@ impl RepeatedRecording {
         let cost = CostToGo::new(kitchen.clone());
         let mut replayed = SessionFollower::new(log.session(), cost.clone());
         let engine = SessionEngine::for_header(kitchen, &header, cost);
-        let advisor = engine.session().spec.asks_assistant().then(|| engine.advisor());
+        let spec = &engine.session().spec;
+        let computes = spec.asks_assistant() && spec.external_concept().is_none();
+        let advisor = computes.then(|| engine.advisor());
         let mut again = RepeatedSession { engine, produced: VecDeque::new(), advisor, questions: VecDeque::new() };
         let mut difference = None;
         while let Some(line) = log.next_line()? {
@@ -127,6 +129,7 @@ impl RepeatedSession {
 
     /// A recommendation is computed anew, for the request after the same event.
     fn computed_again(&mut self, event: &Event) -> Event {
+        // What an external concept said comes from outside.
         let (Event::Advised(advice), Some(advisor)) = (event, &mut self.advisor) else { return event.clone() };
         self.questions.retain(|question| question.seq >= advice.for_seq);
         match self.questions.front().filter(|question| question.seq == advice.for_seq) {

@@ -45,7 +45,7 @@ pub struct SenderComparisonSettings {
 impl SenderComparisonSettings {
     /// The session's own (ToM-Com if it has none) and those in `with`.
     pub fn concepts(&self, spec: &SessionSpec) -> Vec<ConceptName> {
-        let own = match spec.assistant.concept {
+        let own = match spec.assistant.concept.name() {
             ConceptName::None => ConceptName::TomCom,
             own => own,
         };
@@ -63,7 +63,8 @@ impl SenderComparisonSettings {
 #[derive(Debug)]
 struct Voice {
     name: ConceptName,
-    advisor: Advisor,
+    /// `None` of an external concept, which cannot be asked again: what it answered is in the recording.
+    advisor: Option<Advisor>,
     /// Hypothetical signals within the window: number of human presses before each, and its location.
     said: Vec<(u32, LocationId)>,
     repeats: SignalRepeatRule,
@@ -105,7 +106,7 @@ impl SenderComparisonFollower {
     pub fn new(session: Session, cost: CostToGo, request: &SenderComparisonSettings) -> SenderComparisonFollower {
         let voice = |name: ConceptName| Voice {
             name,
-            advisor: Advisor::by(name, &session, cost.clone()),
+            advisor: (name != ConceptName::External).then(|| Advisor::by(name, &session, cost.clone())),
             said: Vec::new(),
             repeats: SignalRepeatRule::default(),
             proposed: None,
@@ -153,6 +154,9 @@ impl SenderComparisonFollower {
                 self.voices.iter_mut().for_each(|voice| voice.repeats = SignalRepeatRule::default());
             }
             _ => {}
+        }
+        if let Event::Advised(advice) = &stamped.event {
+            self.hear(advice);
         }
         self.forget_what_was_said();
         if leads_to_advice(&self.follower.session, &stamped.event) {
@@ -242,7 +246,10 @@ impl SenderComparisonFollower {
             let mut signals = shown.allowed(&kitchen, highlights);
             let unsaid = voice.repeats.allowed(&kitchen, highlights);
             signals.retain(|signal| unsaid.contains(signal));
-            voice.advisor.answer(&question.about(belief, signals))
+            match &mut voice.advisor {
+                Some(advisor) => advisor.answer(&question.about(belief, signals)),
+                None => Recommendation::silent(seq, time),
+            }
         };
         let advice: Vec<Recommendation> = self.voices.iter_mut().map(answer).collect();
         let held = BeliefSnapshot::new(&kitchen, session.state, belief, time, false).held;
@@ -254,6 +261,19 @@ impl SenderComparisonFollower {
             let spoken = what.map(|what| self.spoken(what, time));
             self.voices[index].spoken.extend(spoken);
         }
+    }
+
+    /// Takes what an external concept answered from the recording.
+    fn hear(&mut self, advice: &Recommendation) {
+        let Some(index) = self.voices.iter().position(|voice| voice.advisor.is_none()) else { return };
+        if let Some(known) = &self.known {
+            let mut known = CommunicationContext::clone(known);
+            known.advice[index] = advice.clone();
+            self.known = Some(Arc::new(known));
+        }
+        let what = self.says(index, advice);
+        let spoken = what.map(|what| self.spoken(what, advice.for_ns));
+        self.voices[index].spoken.extend(spoken);
     }
 
     /// The hypothetical signal to which a recommendation leads; the concept remembers it so as not to repeat it.
@@ -312,6 +332,7 @@ pub fn follows_at_once(stamped: &TimestampedEvent, time: SessionTime) -> bool {
             | Event::ParticipantBelieves(_)
             | Event::Probe(_)
             | Event::Advised(_)
+            | Event::External(_)
             | Event::SignalShown { .. }
             | Event::Screen(_)
     );

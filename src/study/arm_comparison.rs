@@ -22,7 +22,7 @@ use crate::statistics::mean;
 use crate::tables::trials::{MEASURES, PROBES_WRONG};
 use crate::trial_statistics::{TrialStatistics, TrialTotals};
 use tomcom_session::plan::{PrimaryOutcome, StudyAims};
-use tomcom_session::settings::WizardVisibility;
+use tomcom_session::settings::{Condition, WizardVisibility};
 use tomcom_session::study_arm::StudyArm;
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -217,7 +217,7 @@ pub(crate) fn compare_counts(trials: Vec<StudyArmTrial>, aims: StudyAims) -> Opt
         0..=2 => Vec::new(),
         _ => design.linear(true).map_or_else(Vec::new, |model| contrasts(&design, &model)),
     };
-    let is_assistants = |arm: StudyArm| matches!(arm, StudyArm::TomCom | StudyArm::Tom | StudyArm::Dev);
+    let is_assistants = |arm: StudyArm| arm.condition() == Condition::Assistant;
     let against_wizard = found.iter().filter(|one| one.against == StudyArm::Wizard && is_assistants(one.arm));
     let non_inferiority = against_wizard.map(|one| NonInferiority {
         arm: one.arm,

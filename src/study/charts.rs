@@ -16,6 +16,7 @@ use crate::report::STYLE;
 use crate::roc::{ConceptRocCurve, RocPoint};
 use crate::statistics::mean;
 use crate::tables::trials::HEADLINE;
+use crate::tournament::TournamentRow;
 use crate::trial_statistics::TrialStatistics;
 use tomcom_core::measures::detection::CalibrationBin;
 use tomcom_session::study_arm::StudyArm;
@@ -241,6 +242,33 @@ pub fn ratios(contrasts: &[StudyArmContrast]) -> Option<Markup> {
     Some(chart.finish("Ratio of rates between conditions, with intervals of 95 %"))
 }
 
+/// Longest part of a concept's name in the chart of a league, in characters.
+const LONGEST_NAME: usize = 18;
+
+/// Net saving of the concepts of a tournament.
+pub fn league(rows: &[TournamentRow]) -> String {
+    let shown: Vec<(&TournamentRow, f64)> =
+        rows.iter().filter_map(|row| Some((row, row.net_saving_per_100.value?))).collect();
+    let name = |(row, _): &(&TournamentRow, f64)| {
+        let name: Vec<char> = row.concept.chars().collect();
+        name.chunks(LONGEST_NAME).take(2).map(|part| part.iter().collect::<String>()).collect::<Vec<_>>().join("\n")
+    };
+    let names: Vec<String> = shown.iter().map(name).collect();
+    let ends = shown.iter().flat_map(|(row, value)| row.net_saving_per_100.interval.unwrap_or([*value; 2]));
+    let label = "presses saved per 100, net of signals";
+    let width = 120.0 + 130.0 * shown.len() as f64;
+    let mut chart = SvgChart::new(width, 340.0, PlotAxis::named(&names), PlotAxis::over(label, ends));
+    for (x, (row, value)) in shown.iter().enumerate() {
+        let x = x as f64;
+        if let Some([low, high]) = row.net_saving_per_100.interval {
+            chart.line("mean", &[(x, low), (x, high)]);
+        }
+        chart.point("assisted", x, *value, &format!("{}: {value:.1}", row.concept));
+        chart.words("strong", x + 0.04, *value, true, &minus(&format!("{value:.1}")));
+    }
+    document(&chart.finish("Net saving by concept, with intervals of 95 %"), STYLE)
+}
+
 const SIZE: [f64; 2] = [720.0, 420.0];
 /// Least distance between the names of lines at the chart's border, as a share of the chart's height.
 const APART: f64 = 0.05;
@@ -308,6 +336,7 @@ fn class(arm: StudyArm, method: SignificanceTestMethod) -> &'static str {
         (_, StudyArm::TomCom) => "tom-com",
         (_, StudyArm::Tom) => "tom",
         (_, StudyArm::Dev) => "dev",
+        (_, StudyArm::External) => "external",
     }
 }
 

@@ -137,5 +137,6 @@ fn participant_kind(kind: ParticipantKind) -> &'static str {
         ParticipantKind::Simulated => "simulated",
         ParticipantKind::Keyboard => "people at the console's keyboard",
         ParticipantKind::Display => "people at the wall display",
+        ParticipantKind::External => "an external program",
     }
 }

@@ -64,4 +64,5 @@ pub mod standing;
 pub mod statistics;
 pub mod study_part;
 pub mod tables;
+pub mod tournament;
 pub mod trial_statistics;

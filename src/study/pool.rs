@@ -93,6 +93,10 @@ impl PoolRequest {
                 "a plan with two conditions or more, which can be compared",
             );
         }
+        if conditions.contains(&StudyArm::External) {
+            let found = "the condition external, whose program is not started here".to_string();
+            return wrong(found, "a plan without it; tomcom tournament compares external concepts");
+        }
         for period in (1..=conditions.len() as u32).filter(|_| self.arms) {
             let item = PoolItem { participant: 0, period, is_twin: false };
             let (planned, done) = (pool.planned(item), pool.settings(item).1);

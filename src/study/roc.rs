@@ -37,7 +37,8 @@ pub fn parameters(concept: ConceptName) -> Vec<f64> {
             thresholds.chain([0.97, 0.99]).collect()
         }
         ConceptName::Dev => (1..=5).map(f64::from).collect(),
-        ConceptName::None => Vec::new(),
+        // What an external concept sends does not follow from a parameter.
+        ConceptName::None | ConceptName::External => Vec::new(),
     }
 }
 

@@ -420,5 +420,6 @@ pub(crate) fn kind_name(kind: ParticipantKind) -> &'static str {
         ParticipantKind::Simulated => "simulated",
         ParticipantKind::Keyboard => "keyboard",
         ParticipantKind::Display => "display",
+        ParticipantKind::External => "external",
     }
 }

@@ -11,6 +11,8 @@ mod display_probes;
 mod display_server;
 mod escapes;
 mod examples;
+#[cfg(unix)]
+mod external;
 mod fit;
 mod gathering;
 mod gaze;

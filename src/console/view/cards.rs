@@ -75,6 +75,7 @@ fn who_plays(session: &Session) -> String {
         ParticipantKind::Simulated => "SIMULATED PARTICIPANT",
         ParticipantKind::Keyboard => "PERSON AT THE KEYBOARD",
         ParticipantKind::Display => "PERSON AT THE DISPLAY",
+        ParticipantKind::External => "EXTERNAL PARTICIPANT",
     };
     who.chars().flat_map(|letter| [letter, ' ']).collect::<String>().trim_end().to_string()
 }

@@ -150,7 +150,9 @@ pub fn message(brush: &mut Painter, regions: &PanelAreas, session: &Session, mod
         let (at, all) = (check.shown.map_or(0, |(index, _)| index + 1), check.targets.len());
         let who = match session.spec.participant.kind {
             ParticipantKind::Simulated => "the simulated participant looks",
-            ParticipantKind::Keyboard | ParticipantKind::Display => "ask the participant to look",
+            ParticipantKind::Keyboard | ParticipantKind::Display | ParticipantKind::External => {
+                "ask the participant to look"
+            }
         };
         let text = format!(" Gaze check, target {at} of {all}: {who} at the cross; esc ends it ");
         let strong = brush.style(TextRole::Strong);

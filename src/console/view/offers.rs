@@ -16,7 +16,7 @@ use crate::console::key_action::{KeyAction, KeyLayer};
 use crate::console::mouse::ClickAction;
 use crate::console::panels::Panel;
 use crate::console::text_columns::{width, wrap};
-use tomcom_core::base::text::count;
+use tomcom_core::base::text::{count, printable};
 use tomcom_core::communication::concept::{BenefitUnit, ConceptName};
 use tomcom_core::communication::offer::{OfferedCommunication, TAKEN_AFTER};
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption, SignalReason};
@@ -32,6 +32,8 @@ pub(super) struct ShownOffer<'a> {
     act: OfferedCommunication,
     benefit: Option<f64>,
     reason: Option<&'a SignalReason>,
+    /// The reason in an external concept's own words.
+    words: Option<&'a str>,
 }
 
 /// The offer of a signal that is shown to the wizard now, if any.
@@ -46,7 +48,7 @@ pub(super) fn shown<'a>(session: &'a Session, model: &ConsoleModel) -> Option<Sh
         let offer = session.offers.open()?;
         let benefit = offer.advice.worth.map(|worth| worth.benefit);
         let (act, reason) = (offer.advice.what.clone(), offer.advice.reason.as_ref());
-        return Some(ShownOffer { act, benefit, reason });
+        return Some(ShownOffer { act, benefit, reason, words: offer.advice.words.as_deref() });
     }
     let advice = session.advice.as_ref()?;
     let (act, benefit) = match (&advice.best, &advice.proposal) {
@@ -54,7 +56,7 @@ pub(super) fn shown<'a>(session: &'a Session, model: &ConsoleModel) -> Option<Sh
         (None, Some(proposal)) => (OfferedCommunication::Presses(proposal.presses.clone()), None),
         (None, None) => return None,
     };
-    Some(ShownOffer { act, benefit, reason: advice.reason.as_ref() })
+    Some(ShownOffer { act, benefit, reason: advice.reason.as_ref(), words: advice.words.as_deref() })
 }
 
 impl ShownOffer<'_> {
@@ -86,7 +88,7 @@ impl ShownOffer<'_> {
     /// What the offered signal saves: "saves ≈ 4 presses".
     fn saves(&self, brush: &Painter, session: &Session) -> String {
         let Some(benefit) = self.benefit else { return String::new() };
-        match session.spec.assistant.concept.unit() {
+        match session.spec.assistant.concept.name().unit() {
             BenefitUnit::Deviation => format!("belief deviation {benefit:.2}"),
             BenefitUnit::Presses | BenefitUnit::None => {
                 let about = if brush.theme.unicode { "≈" } else { "about" };
@@ -106,7 +108,8 @@ impl ShownOffer<'_> {
     /// and for how long, and the wrong press or the press that is left out.
     fn because(&self, session: &Session, model: &ConsoleModel, believed: &[EstimatedBelief]) -> Vec<String> {
         let Some(reason) = self.reason.map(|reason| wording::reason(&session.kitchen, reason)) else {
-            return self.replaces(session).into_iter().collect();
+            let words = self.words.map(|words| printable(words).into_owned());
+            return words.into_iter().chain(self.replaces(session)).collect();
         };
         let aspect = session.kitchen.aspect_named(&reason.aspect);
         let belief = believed.iter().find(|belief| Some(belief.aspect) == aspect && belief.thinks != belief.truth);
@@ -216,7 +219,7 @@ fn why_no_offer(session: &Session, model: &ConsoleModel, believed: &[EstimatedBe
     }
     match believed.iter().filter(|belief| belief.standing == BeliefCorrectness::False).count() as u64 {
         0 => NOTHING_TO_SAY.to_string(),
-        number if session.spec.assistant.concept.unit() == BenefitUnit::Presses => {
+        number if session.spec.assistant.concept.name().unit() == BenefitUnit::Presses => {
             let cheap = if number == 1 { "costs" } else { "cost" };
             format!("{NOTHING_TO_SAY}: {} {cheap} less than a signal", count(number, "false belief", "false beliefs"))
         }
@@ -285,10 +288,10 @@ fn quietly(brush: &mut Painter, area: Rect, text: &str) {
 
 /// Unit of the numbers in the list of signals, as the remark in the panel's title.
 fn remark(session: &Session) -> &'static str {
-    match session.spec.assistant.concept.unit() {
+    match session.spec.assistant.concept.name().unit() {
         BenefitUnit::Presses => "presses saved",
         BenefitUnit::Deviation => "deviation of beliefs",
-        BenefitUnit::None => session.spec.assistant.concept.title(),
+        BenefitUnit::None => session.spec.assistant.concept.name().title(),
     }
 }
 
@@ -303,7 +306,7 @@ fn why_no_list(session: &Session) -> &'static str {
 
 /// The benefit of a signal in the unit of the communication concept: presses, or belief deviation.
 fn worth(option: &SignalOption, session: &Session) -> String {
-    match session.spec.assistant.concept.unit() {
+    match session.spec.assistant.concept.name().unit() {
         BenefitUnit::Deviation => format!("{:>4.2} ", option.benefit),
         // A benefit that rounds to zero is shown as 0.0, never as -0.0.
         _ => format!("{:>4.1} ", if option.benefit.abs() < NOTHING { 0.0 } else { option.benefit }),
@@ -351,7 +354,7 @@ fn option_line(
 fn gauge(brush: &mut Painter, x: u16, y: u16, option: &SignalOption, session: &Session, role: TextRole) -> u16 {
     let signs = brush.theme.signs();
     let cost = session.spec.assistant.price();
-    let a_column = match session.spec.assistant.concept.unit() {
+    let a_column = match session.spec.assistant.concept.name().unit() {
         BenefitUnit::Deviation => 1.0 / f64::from(GAUGE),
         BenefitUnit::Presses | BenefitUnit::None => PRESSES_A_COLUMN,
     };
@@ -381,7 +384,7 @@ fn cost_line(
     model: &ConsoleModel,
 ) {
     let price = session.spec.assistant.price();
-    let concept = session.spec.assistant.concept;
+    let concept = session.spec.assistant.concept.name();
     let left = match concept.unit() {
         BenefitUnit::Deviation => format!("{price:>4.2} threshold for a signal"),
         BenefitUnit::Presses => format!("{price:>4.1} cost of a signal"),

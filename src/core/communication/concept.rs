@@ -104,12 +104,14 @@ pub enum ConceptName {
     Dev,
     /// No concept: the assistant sends no signals.
     None,
+    /// An external concept: a program of somebody else, which answers over a pipe or a socket.
+    External,
 }
 
 /// What the benefits and the price of a concept's signals are measured in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BenefitUnit {
-    /// Presses of the human that a signal saves.
+    /// Presses of both agents that a signal saves.
     Presses,
     /// Expected deviation of the belief that a signal corrects, a probability.
     Deviation,
@@ -132,7 +134,10 @@ pub struct ConceptEntry {
 
 impl ConceptName {
     /// All communication concepts.
-    pub const ALL: [ConceptName; 4] = [ConceptName::TomCom, ConceptName::Tom, ConceptName::Dev, ConceptName::None];
+    pub const ALL: [ConceptName; 5] =
+        [ConceptName::TomCom, ConceptName::Tom, ConceptName::Dev, ConceptName::None, ConceptName::External];
+    /// The concepts that are part of the program, so that their names alone choose them.
+    pub const OWN: [ConceptName; 4] = [ConceptName::TomCom, ConceptName::Tom, ConceptName::Dev, ConceptName::None];
 
     /// The table of concepts.
     pub const fn entry(self) -> ConceptEntry {
@@ -159,6 +164,12 @@ impl ConceptName {
             ConceptName::None => {
                 ConceptEntry { name: "none", title: "no concept", sends: "No signals", unit: BenefitUnit::None }
             }
+            ConceptName::External => ConceptEntry {
+                name: "external",
+                title: "external concept",
+                sends: "What a program of yours answers",
+                unit: BenefitUnit::Presses,
+            },
         }
     }
 
@@ -184,7 +195,7 @@ impl ConceptName {
 }
 
 /// Creates the communication concept with this name and the settings of a session. `seed` and the number of presses
-/// seed the concept's random stream.
+/// seed the concept's random stream. An external concept is asked over its connection, and is silent here.
 pub fn concept(
     name: ConceptName,
     kitchen: Arc<Kitchen>,
@@ -196,7 +207,7 @@ pub fn concept(
         ConceptName::TomCom => Box::new(Planner::new(kitchen, human, spec.clone(), seed)),
         ConceptName::Tom => Box::new(TomConcept::new(kitchen, spec.belief_threshold)),
         ConceptName::Dev => Box::new(DevConcept::new(kitchen, spec.proposed_presses)),
-        ConceptName::None => Box::new(SilentConcept),
+        ConceptName::None | ConceptName::External => Box::new(SilentConcept),
     }
 }
 

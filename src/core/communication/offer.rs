@@ -52,12 +52,16 @@ pub struct OfferedAdvice {
     pub what: OfferedCommunication,
     /// Sequence number of the event for which the recommendation was computed.
     pub for_seq: u64,
-    /// The value of the offered signal when the offer opened; `None` for proposed presses.
+    /// The value of the offered signal when the offer opened; `None` for proposed presses, and where an external concept
+    /// gave no value.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub worth: Option<OfferWorth>,
     /// The false belief behind the offer and the press that the signal would prevent, as far as they are known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<SignalReason>,
+    /// The reason in the concept's own words; only external concepts give one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub words: Option<String>,
     /// Whether a wizard could see the offer: there is a console, or a script that reads offers, and the session's
     /// settings show recommendations.
     pub visible: bool,

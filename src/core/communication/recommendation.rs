@@ -15,7 +15,8 @@ pub struct Recommendation {
     pub for_seq: u64,
     /// Session time of the event for which the recommendation was computed.
     pub for_ns: SessionTime,
-    /// All signals that could be sent, the signal with the highest net benefit first.
+    /// All signals that could be sent, the signal with the highest net benefit first; none of an external concept that
+    /// names a signal without its value.
     pub options: Vec<SignalOption>,
     /// The recommended signal; `None` if the saving of no signal exceeds its cost.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -27,6 +28,9 @@ pub struct Recommendation {
     /// Proposed presses of the human; only the concept DEV proposes any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub proposal: Option<HumanPressProposal>,
+    /// The reason in the concept's own words; only external concepts give one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub words: Option<String>,
 }
 
 /// Good presses that the DEV concept proposes after an error.
@@ -75,14 +79,15 @@ pub struct SignalReason {
 impl Recommendation {
     /// The recommendation to send no signal, after the event with this sequence number and time.
     pub fn silent(seq: u64, time: SessionTime) -> Recommendation {
-        Recommendation { for_seq: seq, for_ns: time, options: Vec::new(), best: None, reason: None, proposal: None }
+        let (options, best, reason, proposal, words) = (Vec::new(), None, None, None, None);
+        Recommendation { for_seq: seq, for_ns: time, options, best, reason, proposal, words }
     }
 
     /// Removes a signal that has been sent; which signal is best then is not computed before the next recommendation.
     pub fn remove(&mut self, sent: &Signal) {
         self.options.retain(|option| option.signal != *sent);
         if self.best.as_ref() == Some(sent) {
-            (self.best, self.reason) = (None, None);
+            (self.best, self.reason, self.words) = (None, None, None);
         }
     }
 

@@ -1,5 +1,9 @@
 //! Settings of the assistant and its planner in a session file.
 
+use std::fmt;
+
+use serde::de::value::{MapAccessDeserializer, StrDeserializer};
+use serde::de::{Deserializer, MapAccess, Visitor};
 use serde::{Deserialize, Serialize};
 
 use super::concept::{BenefitUnit, ConceptName};
@@ -12,7 +16,7 @@ pub struct AssistantSpec {
     /// Whether the assistant computes recommendations in trials in which the assistant does not send signals.
     pub shadow: ShadowMode,
     /// The communication concept by which the assistant decides which signals to send.
-    pub concept: ConceptName,
+    pub concept: ConceptSpec,
     /// Cost of communication in presses: the expected saving of a signal must exceed this cost (1.5 in the paper).
     pub cost_of_communication: f64,
     /// Threshold of the concept ToM: expected belief deviation, a probability, above which ToM sends a signal.
@@ -24,6 +28,101 @@ pub struct AssistantSpec {
     pub works_ahead: bool,
     /// Settings of the planner's rollouts: how finely the planner computes.
     pub rollout: RolloutSettings,
+}
+
+/// The choice of a communication concept: the name of one of the program's, or a program of somebody else.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum ConceptSpec {
+    /// A concept of the program, by its name.
+    Own(ConceptName),
+    /// An external concept.
+    External(ExternalMind),
+}
+
+/// A program that answers as a concept or as a participant: `{ external = "python my_agent.py" }`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ExternalMind {
+    /// Command line, which the shell runs where the program runs; or `tcp://127.0.0.1:PORT` of a program that listens on
+    /// this computer.
+    pub external: String,
+    /// Whether a concept is told the estimate of the participant's belief.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub estimate: bool,
+    /// Longest wait for an answer where nothing else goes on meanwhile, in seconds; at the console, silence from which
+    /// on the wizard is told.
+    #[serde(default = "usual_wait_s")]
+    pub wait_s: f64,
+}
+
+fn usual_wait_s() -> f64 {
+    10.0
+}
+
+impl ExternalMind {
+    /// The program behind this command line or address, with the usual settings.
+    pub fn new(external: impl Into<String>) -> ExternalMind {
+        ExternalMind { external: external.into(), estimate: false, wait_s: usual_wait_s() }
+    }
+}
+
+impl ConceptSpec {
+    /// The concept in the table of concepts.
+    pub fn name(&self) -> ConceptName {
+        match self {
+            ConceptSpec::Own(name) => *name,
+            ConceptSpec::External(_) => ConceptName::External,
+        }
+    }
+
+    /// What the user calls the concept: its name, or the external program's command line or address.
+    pub fn label(&self) -> &str {
+        match self {
+            ConceptSpec::Own(name) => name.name(),
+            ConceptSpec::External(mind) => &mind.external,
+        }
+    }
+}
+
+impl From<ConceptName> for ConceptSpec {
+    fn from(name: ConceptName) -> ConceptSpec {
+        ConceptSpec::Own(name)
+    }
+}
+
+impl PartialEq<ConceptName> for ConceptSpec {
+    fn eq(&self, name: &ConceptName) -> bool {
+        self.name() == *name
+    }
+}
+
+impl<'de> Deserialize<'de> for ConceptSpec {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<ConceptSpec, D::Error> {
+        deserializer.deserialize_any(ConceptVisitor)
+    }
+}
+
+/// Reads a concept's name or the table of an external concept, and keeps the error messages of each.
+struct ConceptVisitor;
+
+impl<'de> Visitor<'de> for ConceptVisitor {
+    type Value = ConceptSpec;
+
+    fn expecting(&self, to: &mut fmt::Formatter) -> fmt::Result {
+        to.write_str("the name of a concept, or { external = \"COMMAND\" }")
+    }
+
+    fn visit_str<E: serde::de::Error>(self, name: &str) -> Result<ConceptSpec, E> {
+        if name == ConceptName::External.name() {
+            return Err(E::custom("found \"external\", and no program: { external = \"COMMAND\" } names one"));
+        }
+        ConceptName::deserialize(StrDeserializer::<E>::new(name)).map(ConceptSpec::Own)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<ConceptSpec, A::Error> {
+        ExternalMind::deserialize(MapAccessDeserializer::new(map)).map(ConceptSpec::External)
+    }
 }
 
 /// Whether the assistant computes recommendations in conditions in which the assistant does not send signals.
@@ -41,7 +140,7 @@ impl Default for AssistantSpec {
     fn default() -> Self {
         AssistantSpec {
             shadow: ShadowMode::On,
-            concept: ConceptName::TomCom,
+            concept: ConceptSpec::Own(ConceptName::TomCom),
             cost_of_communication: 1.5,
             // The default threshold is equal to that in the definition of a false belief.
             belief_threshold: 0.5,
@@ -114,7 +213,7 @@ impl RolloutSettings {
 impl AssistantSpec {
     /// The value that a signal's benefit must exceed: the cost of communication in presses, or the threshold of ToM.
     pub fn price(&self) -> f64 {
-        match self.concept.unit() {
+        match self.concept.name().unit() {
             BenefitUnit::Deviation => self.belief_threshold,
             BenefitUnit::Presses | BenefitUnit::None => self.cost_of_communication,
         }
@@ -123,9 +222,9 @@ impl AssistantSpec {
     /// The parameter that is varied when concepts are compared: the cost of communication, the threshold of ToM, or the
     /// number of presses that DEV proposes.
     pub fn parameter(&self) -> f64 {
-        match self.concept {
+        match self.concept.name() {
             ConceptName::Dev => self.proposed_presses as f64,
-            ConceptName::TomCom | ConceptName::Tom | ConceptName::None => self.price(),
+            ConceptName::TomCom | ConceptName::Tom | ConceptName::None | ConceptName::External => self.price(),
         }
     }
 }

@@ -284,7 +284,7 @@ fn signal_labels(spec: &SessionSpec, kitchen: &Kitchen) -> Vec<String> {
 
 /// Unit of the channels with the net benefit of signals: presses, or the deviation of beliefs.
 fn net_benefit_unit(spec: &SessionSpec) -> &'static str {
-    match spec.assistant.concept.unit() {
+    match spec.assistant.concept.name().unit() {
         BenefitUnit::Deviation => "probability",
         BenefitUnit::Presses | BenefitUnit::None => "presses",
     }

@@ -15,7 +15,7 @@ mod sweep;
 use std::path::{Path, PathBuf};
 
 use tomcom_session::files::{SessionSetup, read_session};
-use tomcom_session::headless::SimulationShard;
+use tomcom_session::headless::{Outside, SimulationShard};
 use tomcom_study::files::simulated_trials::{SimulationRequest, each_trial};
 
 /// An empty folder for the test of this name.
@@ -41,6 +41,7 @@ fn recorded(files: &SessionSetup, trials: u64, out: &Path) -> Vec<PathBuf> {
     let mut recordings = Vec::new();
     let simulated = each_trial(
         &request,
+        Outside::NOTHING,
         || (),
         |trial| {
             recordings.push(trial.folder);

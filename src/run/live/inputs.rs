@@ -4,6 +4,7 @@ use super::display::PageEvent;
 use super::live_session::Live;
 use crate::console::console_model::NoticeLevel;
 use crate::console::{ConsoleCommand, ConsoleMessage, update};
+use crate::run::assistant_link::AssistantNews;
 use crate::run::leaving::LeavingReason;
 use crate::run::operator_station::{PageInput, lost_since};
 use tomcom_core::base::time::SessionTime;
@@ -40,12 +41,18 @@ impl Live {
     /// Passes an event to the engine and records the result. The wizard sees why an event was refused, except for gaze
     /// samples and late recommendations.
     pub(super) fn input(&mut self, event: Event) {
-        let is_silent = matches!(event, Event::Gaze(_) | Event::Advised(_));
+        let is_silent = matches!(event, Event::Gaze(_) | Event::Advised(_) | Event::External(_));
         let outcome = self.engine.input(self.clock.now(), event);
         self.record(&outcome.events);
         if let Some(reason) = outcome.refused.filter(|_| !is_silent) {
             self.model.say(NoticeLevel::Refused, reason);
         }
+    }
+
+    /// Takes what came back from whoever advises.
+    pub(super) fn take_assistant_news(&mut self, news: AssistantNews) {
+        let events = self.advisor.as_mut().map(|link| link.take(news)).unwrap_or_default();
+        events.into_iter().for_each(|event| self.input(event));
     }
 
     /// Lets the engine raise due events, and records them.

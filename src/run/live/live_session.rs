@@ -11,7 +11,7 @@ use crate::console::console_model::NoticeLevel;
 use crate::console::console_model::RecordingStatus;
 use crate::console::console_model::SenderComparisonView;
 use crate::console::{ConsoleModel, KeyBindings};
-use crate::run::advisor_thread::{AdvisorThreadHandle, next_advice};
+use crate::run::assistant_link::{AssistantLink, AssistantNews, next_news};
 use crate::run::clock::SessionClock;
 use crate::run::comparison_thread::ComparisonThreadHandle;
 use crate::run::doctor::free_bytes;
@@ -24,8 +24,8 @@ use crate::run::options::SessionStart;
 use crate::run::resume::{PreparedSession, RecordingPlace};
 use crate::run::terminal::{TerminalScreen, theme};
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_devices::external::LocalMinds;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::event::WizardScreenContent;
 use tomcom_session::files::WallTime;
@@ -45,8 +45,8 @@ const RESTING: Duration = Duration::from_millis(250);
 /// A running session with its recording and devices.
 pub(super) struct Live {
     pub(super) engine: SessionEngine,
-    /// Connection to the assistant's thread, if the session requests advice.
-    pub(super) advisor: Option<AdvisorThreadHandle>,
+    /// Connection to whoever advises, if the session requests advice.
+    pub(super) advisor: Option<AssistantLink>,
     /// The comparison of wizard and assistants, if the console shows it.
     pub(super) comparison: Option<ComparisonThreadHandle>,
     /// The participant's display, if there is one.
@@ -121,8 +121,8 @@ impl ConsoleShell for Live {
         self.engine.session().spec.participant.gaze == GazeSource::Mouse && self.display.is_none()
     }
 
-    async fn advice(&mut self) -> Option<Recommendation> {
-        next_advice(&mut self.advisor).await
+    async fn advice(&mut self) -> Option<AssistantNews> {
+        next_news(&mut self.advisor).await
     }
 
     fn take(&mut self, event: LoopEvent) -> Result<Option<LeavingReason>, LiveError> {
@@ -132,7 +132,7 @@ impl ConsoleShell for Live {
             LoopEvent::EngineDue => self.fire(),
             LoopEvent::TargetDue => self.show_target(),
             LoopEvent::Page(input) => self.take_page_input(input),
-            LoopEvent::Advice(advice) => self.input(Event::Advised(*advice)),
+            LoopEvent::Advice(news) => self.take_assistant_news(*news),
             LoopEvent::PointerTick => self.sample_pointer(),
             LoopEvent::FileTick => self.flush(),
             LoopEvent::WatchTick => self.watch(),
@@ -184,7 +184,7 @@ impl Live {
         model.gaze_pairing = station.tracker.pairing();
         model.recorded_gaze = station.tracker.file().map(|file| file.summary.clone());
         let clock = SessionClock::start(time);
-        let advisor = spec.asks_assistant().then(|| AdvisorThreadHandle::start(engine.advisor()));
+        let (advisor, told) = AssistantLink::start(&engine, &LocalMinds);
         let mut live = Live {
             engine,
             advisor,
@@ -215,6 +215,7 @@ impl Live {
         if let Some(request) = compare {
             live.input(Event::Unblinded { concepts: request.concepts(&spec) });
         }
+        told.into_iter().for_each(|event| live.input(event));
         live.carry_calibration(station.tracker.calibrated());
         live.build_display();
         live.begin_protocol(consent);

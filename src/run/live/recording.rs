@@ -27,6 +27,11 @@ impl Live {
                 Event::RobotSafety { mode, force_n, joint } if mode.has_stopped_itself() => {
                     self.model.say(NoticeLevel::Alarm, event_words::arm_stopped(mode, force_n, joint));
                 }
+                Event::External(ref event) => {
+                    if let Some(words) = event.words() {
+                        self.model.warn(words);
+                    }
+                }
                 Event::Probe(ref event @ (ProbeEvent::Delayed { .. } | ProbeEvent::Dropped { .. })) => {
                     self.model.warn(event_words::probe(event));
                 }
@@ -52,9 +57,10 @@ impl Live {
                 self.model.wizard = WizardSummary::from_follower(self.engine.follower()).measures;
             }
         }
+        let mut told = Vec::new();
         for question in self.engine.take_questions() {
-            if let Some(advisor) = &self.advisor {
-                advisor.ask(question);
+            if let Some(advisor) = &mut self.advisor {
+                told.extend(advisor.ask(question));
             }
         }
         let judged = self.engine.judged();
@@ -65,6 +71,7 @@ impl Live {
         if let Some(viewing) = &mut self.viewing {
             viewing.view(events, &self.engine);
         }
+        told.into_iter().for_each(|event| self.input(event));
     }
 
     /// Has the terminal ring with the next frame, if the session asks for that.

@@ -72,7 +72,7 @@ pub(super) fn trial_robot(kitchen: &Kitchen, spec: &SessionSpec, trial: u64) -> 
 fn with_physics(robot: RobotTaskExecutor, kitchen: &Kitchen, spec: &SessionSpec, trial: u64) -> RobotTaskExecutor {
     let hand = match spec.participant.kind {
         ParticipantKind::Simulated => ReachingBehaviour::SIMULATED,
-        ParticipantKind::Keyboard | ParticipantKind::Display => ReachingBehaviour::UNSEEN,
+        ParticipantKind::Keyboard | ParticipantKind::Display | ParticipantKind::External => ReachingBehaviour::UNSEEN,
     };
     robot.with_body(SimulatedArm::new(kitchen, hand, spec.seed, trial))
 }

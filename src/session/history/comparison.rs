@@ -213,7 +213,7 @@ impl SenderComparison {
             lines.push(format!(
                 "recommendation of {} at this time: {}",
                 lane.name,
-                thought(kitchen, advice, lane.concept.is_some_and(|concept| concept.unit() == BenefitUnit::Deviation))
+                thought(kitchen, advice, lane.concept.map_or(BenefitUnit::None, ConceptName::unit))
             ));
         }
         lines.extend(believed(kitchen, known));
@@ -223,26 +223,30 @@ impl SenderComparison {
     }
 }
 
-/// With the concept ToM, the values of options are expected deviations of beliefs.
-fn thought(kitchen: &Kitchen, advice: &Recommendation, is_tom: bool) -> String {
+fn thought(kitchen: &Kitchen, advice: &Recommendation, unit: BenefitUnit) -> String {
     if let Some(proposal) = &advice.proposal {
         return CommunicationContent::Proposal(proposal.presses.clone()).words();
     }
     let option = |option: &SignalOption| {
         let (signal, SignalOption { benefit, standard_error, net, .. }) = (wording::signal(&option.signal), option);
-        match is_tom {
-            true => format!("{signal} {benefit:.2} (above threshold {net:+.2})"),
-            false => format!("{signal} {benefit:.2} ±{standard_error:.2} (net benefit {net:+.2})"),
+        match unit {
+            BenefitUnit::Deviation => format!("{signal} {benefit:.2} (above threshold {net:+.2})"),
+            BenefitUnit::Presses | BenefitUnit::None => {
+                format!("{signal} {benefit:.2} ±{standard_error:.2} (net benefit {net:+.2})")
+            }
         }
     };
     let options: Vec<String> = advice.options.iter().take(3).map(option).collect();
     let best = advice.best.as_ref().map_or("send no signal".to_string(), wording::signal);
     let reason = advice.reason.as_ref().map(|reason| wording::reason(kitchen, reason));
-    let reason = reason.map_or(String::new(), |reason| format!("; the human {}", reason.words()));
-    match options.is_empty() {
-        true => best,
-        false if is_tom => format!("{best}{reason}; expected deviation of beliefs: {}", options.join(", ")),
-        false => format!("{best}{reason}; presses saved by each signal: {}", options.join(", ")),
+    let reason = reason.map(|reason| format!("; the human {}", reason.words()));
+    let reason = reason.or_else(|| advice.words.as_ref().map(|words| format!("; {words}"))).unwrap_or_default();
+    match unit {
+        _ if options.is_empty() => format!("{best}{reason}"),
+        BenefitUnit::Deviation => format!("{best}{reason}; expected deviation of beliefs: {}", options.join(", ")),
+        BenefitUnit::Presses | BenefitUnit::None => {
+            format!("{best}{reason}; presses saved by each signal: {}", options.join(", "))
+        }
     }
 }
 

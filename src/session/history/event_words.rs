@@ -90,7 +90,9 @@ pub fn line(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<St
         Event::RobotStopped => "robot stopped by the wizard".to_string(),
         Event::RobotResumed => "robot resumed".to_string(),
         // A recommendation gets a text line only if it advises a signal.
-        Event::Advised(advice) => advised(kitchen, advice, follower.session.spec.assistant.concept)?,
+        Event::Advised(advice) => advised(kitchen, advice, follower.session.spec.assistant.concept.name())?,
+        // Beliefs get no line.
+        Event::External(event) => event.words()?,
         Event::OfferOpened(offer) => offered(offer),
         Event::OfferClosed { reason, .. } => format!("offer closes: {}", reason.words()),
         Event::SignalShown { signal: shown, offer: Some(_), .. } => {
@@ -195,15 +197,21 @@ fn advised(kitchen: &Kitchen, advice: &Recommendation, by: ConceptName) -> Optio
         let presses: Vec<String> = proposal.presses.iter().map(|press| said(press)).collect();
         return Some(format!("proposed after the error: {}", presses.join(", ")));
     }
-    let best = advice.top().filter(|option| Some(&option.signal) == advice.best.as_ref())?;
-    let what = wording::signal(&best.signal);
-    let worth = match by.unit() {
-        BenefitUnit::Deviation => format!("belief off by {:.2}", best.benefit),
-        _ => format!("saves {:.1} presses (±{:.1})", best.benefit, best.standard_error),
-    };
-    let reason = advice.reason.as_ref().map(|reason| wording::reason(kitchen, reason));
-    let reason = reason.map_or(String::new(), |reason| format!(": {}", reason.words()));
-    Some(format!("advised: {what}, {worth}{reason}"))
+    let best = advice.best.as_ref()?;
+    let what = wording::signal(best);
+    // An external concept can name a signal without its value.
+    let worth = advice.options.iter().find(|option| option.signal == *best).map(|option| match by.unit() {
+        BenefitUnit::Deviation => format!(", belief off by {:.2}", option.benefit),
+        BenefitUnit::Presses | BenefitUnit::None if option.rollouts == 0 => {
+            format!(", saves {:.1} presses", option.benefit)
+        }
+        BenefitUnit::Presses | BenefitUnit::None => {
+            format!(", saves {:.1} presses (±{:.1})", option.benefit, option.standard_error)
+        }
+    });
+    let reason = advice.reason.as_ref().map(|reason| wording::reason(kitchen, reason).words());
+    let reason = reason.or_else(|| advice.words.clone()).map_or(String::new(), |reason| format!(": {reason}"));
+    Some(format!("advised: {what}{}{reason}", worth.unwrap_or_default()))
 }
 
 fn offered(offer: &OfferedAdvice) -> String {

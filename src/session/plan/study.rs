@@ -15,6 +15,7 @@ use crate::study_arm::StudyArm;
 use crate::tutorial::Tutorial;
 use crate::wall_display::AnswerDevice;
 use tomcom_core::base::rng::mix;
+use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_people::wizard::WizardKind;
 
@@ -129,7 +130,7 @@ impl Study {
         }
         spec.trial.condition = spec.unattended(spec.trial.condition);
         let saw_advice = spec.script_reads_offers();
-        let arm = StudyArm::from_settings(spec.trial.condition, spec.assistant.concept, saw_advice);
+        let arm = StudyArm::from_settings(spec.trial.condition, spec.assistant.concept.name(), saw_advice);
         if let Some(step) = &mut spec.step {
             step.phases = vec![PhaseSpec::Trial];
             step.arm = Some(arm);
@@ -189,8 +190,9 @@ impl Study {
 
 fn set_arm(spec: &mut SessionSpec, arm: StudyArm) {
     spec.trial.condition = arm.condition();
-    if let Some(concept) = arm.concept() {
-        spec.assistant.concept = concept;
+    // The file's settings name the program of an external concept.
+    if let Some(concept) = arm.concept().filter(|concept| *concept != ConceptName::External) {
+        spec.assistant.concept = concept.into();
     }
     match arm {
         StudyArm::WizardWithAdvice => {
@@ -201,7 +203,7 @@ fn set_arm(spec: &mut SessionSpec, arm: StudyArm) {
             }
         }
         StudyArm::Wizard => spec.wizard.offers = None,
-        StudyArm::None | StudyArm::TomCom | StudyArm::Tom | StudyArm::Dev => {}
+        _ => {}
     }
 }
 

@@ -79,8 +79,9 @@ impl TrialFalseBeliefErrors {
     /// Errors from false beliefs in a session so far; `None` unless the beliefs before every press are known.
     fn from_follower(follower: &SessionFollower) -> Option<TrialFalseBeliefErrors> {
         let judged = &follower.judged;
-        let is_simulated = follower.session.spec.participant.kind == ParticipantKind::Simulated;
-        if !is_simulated || judged.iter().any(|press| !press.belief_known) {
+        let kind = follower.session.spec.participant.kind;
+        let is_told = matches!(kind, ParticipantKind::Simulated | ParticipantKind::External);
+        if !is_told || judged.iter().any(|press| !press.belief_known) {
             return None;
         }
         let count =
@@ -165,6 +166,9 @@ pub struct SimulationSummary {
     pub simulated_s: f64,
     pub wall_s: f64,
     pub excluded: u64,
+    /// Trials that were aborted since an external mind failed, each with its reason.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub failed: Vec<String>,
     /// Number of complete recordings that already existed and were read instead of simulated anew.
     pub found: u64,
     /// New paths of logs that end within their header, as after a power failure; simulated anew.

@@ -6,4 +6,5 @@ pub mod pool_file;
 pub mod recordings;
 pub mod simulated_trials;
 pub mod study_part_file;
+pub mod tournament_files;
 pub mod training;

@@ -15,7 +15,7 @@ use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::files::SessionSetup;
-use tomcom_session::headless::SimulationShard;
+use tomcom_session::headless::{AdviceTime, Outside, SimulationShard};
 use tomcom_session::log::{
     LogReader, RecordingError, RecordingLock, RecordingWriteError, SimulatedLogState, check_simulated,
 };
@@ -64,6 +64,10 @@ pub struct SimulatedTrial {
     pub found: bool,
     /// New path of a log that ended before the end of its header and was moved out of the way.
     pub moved: Option<PathBuf>,
+    /// Computing time of the assistant; `None` of a recording that existed before.
+    pub advice: Option<AdviceTime>,
+    /// Why the trial was aborted: an external mind failed.
+    pub failed: Option<String>,
 }
 
 /// Simulates the trials on all processors and passes the trials to `take` one by one, in order. Trials that another
@@ -71,6 +75,7 @@ pub struct SimulatedTrial {
 /// folder holds another recording, or an exclusion file is damaged; the first error of `take`.
 pub fn each_trial(
     simulation: &SimulationRequest,
+    outside: Outside,
     done: impl Fn() + Sync,
     mut take: impl FnMut(SimulatedTrial) -> Result<(), RecordingError>,
 ) -> Result<(), RecordingError> {
@@ -88,7 +93,7 @@ pub fn each_trial(
             return Ok(());
         }
         let one = |kept: &mut KeptCost, trial: &u64| {
-            let simulated = simulate_trial(simulation, &kitchen, *trial, kept);
+            let simulated = simulate_trial(simulation, &kitchen, *trial, outside, kept);
             if simulated.is_ok() {
                 done();
             }
@@ -148,28 +153,30 @@ fn simulate_trial(
     simulation: &SimulationRequest,
     kitchen: &Arc<Kitchen>,
     trial: u64,
+    outside: Outside,
     kept: &mut KeptCost,
 ) -> Result<SimulatedTrial, RecordingError> {
     let header = header_of_trial(simulation, trial);
     let folder = folder_of_trial(&simulation.out, &header.session);
     let opened = SimulatedLogState::open(&folder, &header)?;
     let cost = kept.take(kitchen);
-    let (follower, found, moved) = match opened {
+    let (follower, found, moved, advice) = match opened {
         SimulatedLogState::Whole => {
             let mut replay = RecordingReplay::over(LogReader::open(&folder)?, cost);
             replay.run()?;
-            (replay.follower, true, None)
+            (replay.follower, true, None, None)
         }
         SimulatedLogState::Begun { mut log, moved } => {
             let mut engine = SessionEngine::new(kitchen.clone(), header.session, header.trial, cost);
-            headless::run(&mut engine, |stamped: &TimestampedEvent| log.append(stamped))?;
+            let advice = headless::run_with(&mut engine, outside, |stamped: &TimestampedEvent| log.append(stamped))?;
             log.flush()?;
-            (engine.into_follower(), false, moved)
+            (engine.into_follower(), false, moved, Some(advice))
         }
     };
+    let failed = follower.session.aborted.clone();
     let (arm, figures) = (follower.session.study_arm(), TrialSummary::from_follower(&follower));
     kept.keep(kitchen, follower.cost);
-    Ok(SimulatedTrial { folder, arm, figures, found, moved })
+    Ok(SimulatedTrial { folder, arm, figures, found, moved, advice, failed })
 }
 
 pub fn describe_moved(moved: &[String]) -> String {

@@ -5,6 +5,7 @@
 //! together give summary, tables and report. Between these two steps a study can be cut into parts, which are analysed
 //! on different machines and joined ([`shards`]).
 
+pub mod contest;
 pub mod reading;
 mod rows;
 pub mod shards;

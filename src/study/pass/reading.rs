@@ -475,7 +475,7 @@ impl ReplayPass {
         match spec.trial.condition {
             Condition::Wizard if concepts => {
                 let request = SenderComparisonSettings { with: Vec::new(), window: WINDOW };
-                session.spec.assistant.concept = ConceptName::TomCom;
+                session.spec.assistant.concept = ConceptName::TomCom.into();
                 ReplayPass::Beside(Box::new(SenderComparisonFollower::new(session, cost, &request)))
             }
             // Prevented errors can be counted only where false beliefs are known.

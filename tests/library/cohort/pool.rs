@@ -81,7 +81,7 @@ fn proposals_of_simulated_trials_are_judged_by_the_next_presses() {
     let mut files = session_file("default");
     files.spec.trial.condition = Condition::Assistant;
     (files.spec.trial.presses, files.spec.seed) = (200, 9702);
-    (files.spec.assistant.concept, files.spec.assistant.proposed_presses) = (ConceptName::Dev, 2);
+    (files.spec.assistant.concept, files.spec.assistant.proposed_presses) = (ConceptName::Dev.into(), 2);
     files.spec.robot.arm = ArmKind::Timed;
     let figures = run(&files, 3, SimulationShard::WHOLE, &folder("twins-dev"));
     let trials: Vec<TrialStatistics> =
@@ -100,7 +100,7 @@ fn signals_of_simulated_trials_are_useful_or_useless_and_those_of_trials_that_co
     let mut files = session_file("default");
     files.spec.trial.condition = Condition::Assistant;
     files.spec.trial.presses = 200;
-    files.spec.assistant.concept = ConceptName::Tom;
+    files.spec.assistant.concept = ConceptName::Tom.into();
     files.spec.robot.arm = ArmKind::Timed;
     files.spec.seed = 21;
     let figures = run(&files, 3, SimulationShard::WHOLE, &folder("twins"));

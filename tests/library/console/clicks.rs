@@ -82,7 +82,7 @@ fn the_question_of_a_click_gives_way_to_a_newer_offer_that_the_wizard_sees() {
             assert!(stage.asks_to_send(), "clock ahead by {ahead_s} s");
             stage.session.spec.console.visibility = shows;
             let what = OfferedCommunication::Signal(highlight("counter"));
-            let advice = OfferedAdvice { what, for_seq: 17, worth: None, reason: None, visible };
+            let advice = OfferedAdvice { what, for_seq: 17, worth: None, reason: None, words: None, visible };
             stage.at(23.5, Event::OfferOpened(advice));
             ahead(&mut stage);
             mouse::expire(&mut stage.model, &stage.session);

@@ -28,7 +28,7 @@ fn with_assistant(name: &str, out: &str, (trials, seconds): (u64, f64), further:
 /// Two trials in which the assistant acts by this concept, for little reason.
 fn assisted(name: &str, out: &str, by: ConceptName) -> PathBuf {
     with_assistant(name, out, (2, 45.0), |spec| {
-        (spec.assistant.concept, spec.assistant.cost_of_communication) = (by, 0.3);
+        (spec.assistant.concept, spec.assistant.cost_of_communication) = (by.into(), 0.3);
     })
 }
 
@@ -157,7 +157,7 @@ fn advice_that_was_not_given_is_no_verified_advice() {
 fn pressed_on(name: &str, sent: &[(f64, Signal)]) -> (SessionSetup, Vec<TimestampedEvent>) {
     let mut files = session(name);
     (files.spec.participant.kind, files.spec.participant.gaze) = (ParticipantKind::Keyboard, GazeSource::None);
-    files.spec.assistant.concept = ConceptName::Tom;
+    files.spec.assistant.concept = ConceptName::Tom.into();
     // There is no tracker; they look at nothing, so that only signals tell them something.
     (files.spec.human.looking.looks_hz, files.spec.human.looking.other_looks_hz) = (0.0, 0.0);
     files.spec.human.looking.capture = 0.0;
@@ -280,7 +280,7 @@ fn a_shadow_that_is_asked_again_says_the_same_also_on_a_thread() {
     files.spec.robot.arm = ArmKind::Timed;
     files.spec.trial.condition = Condition::None;
     files.spec.trial.seconds = 45.0;
-    files.spec.assistant.concept = ConceptName::Tom;
+    files.spec.assistant.concept = ConceptName::Tom.into();
     let out = folder("shadow");
     simulate_into(files, 1, &out);
     let mut log = LogReader::open(&out.join("seed1-S001")).expect("a recording");

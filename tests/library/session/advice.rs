@@ -106,7 +106,7 @@ fn an_offer_closes_only_well_below_zero_or_when_another_is_clearly_better() {
 
 #[test]
 fn the_thresholds_of_tom_are_probabilities() {
-    let mut engine = advised(|spec| spec.assistant.concept = ConceptName::Tom);
+    let mut engine = advised(|spec| spec.assistant.concept = ConceptName::Tom.into());
     let inputs = [pot(1.0, 0.3), pot(3.0, -0.1), pot(4.0, -0.11)];
     assert_eq!(changes(&mut engine, &inputs), expected(&[("opens cooking_pot", 1.0), ("fell", 4.0)]));
 }
@@ -118,7 +118,7 @@ fn dev_offers_presses_that_cannot_be_sent() {
         let proposal = (!presses.is_empty()).then_some(HumanPressProposal { error: 0, presses });
         (seconds, Event::Advised(Recommendation { proposal, ..Recommendation::silent(0, at(seconds)) }))
     };
-    let mut engine = advised(|spec| spec.assistant.concept = ConceptName::Dev);
+    let mut engine = advised(|spec| spec.assistant.concept = ConceptName::Dev.into());
     changes(&mut engine, &[proposes(1.0, &["cook"]), proposes(1.1, &[])]);
     assert!(offers::enter(engine.session(), at(2.0)).expect_err("no signal").contains("cannot be sent"));
     assert_eq!(changes(&mut engine, &[marker(4.0)]), expected(&[("fell", 2.5)]));
@@ -258,7 +258,7 @@ fn an_assistant_that_acts_makes_no_offers() {
 
 fn dev(spec: &mut SessionSpec) {
     spec.trial.condition = Condition::Assistant;
-    spec.assistant.concept = ConceptName::Dev;
+    spec.assistant.concept = ConceptName::Dev.into();
 }
 
 /// Gives an input, and lets the assistant answer whatever is asked because of it; the events, in order.
@@ -372,15 +372,15 @@ fn only_the_assistant_of_dev_proposes() {
     assert!(refused(&mut engine, 2.0, propose(Sender::Wizard, "take rice")).contains("assistant"));
     assert!(refused(&mut engine, 2.0, propose(Sender::Assistant, "trash")).contains("do nothing"));
     assert!(refused(&mut engine, 2.0, propose(Sender::Assistant, "dance")).contains("no such button"));
-    let (mut other, _) = after_an_error(|spec| spec.assistant.concept = ConceptName::Tom);
+    let (mut other, _) = after_an_error(|spec| spec.assistant.concept = ConceptName::Tom.into());
     assert!(refused(&mut other, 2.0, propose(Sender::Assistant, "take rice")).contains("only DEV"));
 }
 
 /// An estimate of a session with proposals is that of the same session without them, until a proposed press is made.
 #[test]
 fn a_proposal_on_the_display_teaches_the_estimate_nothing() {
-    let [(with, _), (without, _)] =
-        [ConceptName::Dev, ConceptName::None].map(|concept| after_an_error(|spec| spec.assistant.concept = concept));
+    let [(with, _), (without, _)] = [ConceptName::Dev, ConceptName::None]
+        .map(|concept| after_an_error(|spec| spec.assistant.concept = concept.into()));
     assert!(proposed(&with).is_some() && without.session().shown.is_none());
     assert_eq!(with.belief(), without.belief());
 }

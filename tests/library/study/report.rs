@@ -219,7 +219,7 @@ fn what_was_offered_stands_beside_what_the_wizard_did() {
         let opened = at(10.0 * seq as f64);
         let sent = how.map(|_| opened + at(stood_s));
         let what = OfferedCommunication::Signal(Signal::ShowRecipe("order_1".to_string()));
-        let advice = OfferedAdvice { what, for_seq: 1, worth: None, reason: None, visible: true };
+        let advice = OfferedAdvice { what, for_seq: 1, worth: None, reason: None, words: None, visible: true };
         TimedOffer {
             offer: Offer { seq, opened, used: how.zip(sent).map(|(how, at)| OfferUse { how, at }), advice },
             opened_s: opened.as_secs_f64(),

@@ -143,7 +143,7 @@ fn session_columns<'a>() -> Vec<TableColumn<BidsSession<'a>>> {
         "recording", "", "Name of the recording's folder" => row.recording;
         "kitchen", "", "Name of the kitchen" => &row.session.kitchen.name;
         "condition", CONDITIONS, "Who could send signals" => row.session.spec.trial.condition.name();
-        "concept", "", "Communication concept of the assistant" => row.session.spec.assistant.concept.name();
+        "concept", "", "Communication concept of the assistant" => row.session.spec.assistant.concept.label();
         "study_arm", "", "Arm by what was done: none, wizard, wizard+advice (the wizard saw recommendations), \
             tom-com, tom or dev" => row.session.study_arm().name();
         "planned_arm", "", "Arm under which the trial counts: that of the plan, without a plan that of the settings"

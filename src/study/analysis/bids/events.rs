@@ -10,6 +10,7 @@ use tomcom_core::communication::Signal;
 use tomcom_core::communication::offer::OfferedCommunication;
 use tomcom_core::gaze::device_clock::StampFault;
 use tomcom_session::event::{Event, MEANINGS};
+use tomcom_session::external::ExternalEvent;
 use tomcom_session::gaze_check::GazeCheckEvent;
 use tomcom_session::probes::{ProbeEvent, ProbeSubject};
 use tomcom_session::protocol::ProtocolEvent;
@@ -194,11 +195,31 @@ impl EventCells {
                 self.refers_to = Some(advice.for_seq);
                 self.value = advice.options.first().map(|option| option.net);
                 self.item = advice.reason.as_ref().map(|reason| reason.aspect.clone()).unwrap_or_default();
+                self.reason = advice.words.clone().unwrap_or_default();
                 if let Some(signal) = &advice.best {
                     self.take_signal(signal);
                 }
                 if let Some(proposal) = &advice.proposal {
                     self.button = proposal.presses.join(", ");
+                }
+            }
+            Event::External(event) => {
+                self.agent = "assistant".to_string();
+                match event {
+                    ExternalEvent::Began { name: own, .. } => {
+                        (self.what, self.answer) = ("began".to_string(), own.clone());
+                    }
+                    ExternalEvent::Believes { for_seq, .. } => {
+                        (self.what, self.refers_to) = ("believes".to_string(), Some(*for_seq));
+                    }
+                    ExternalEvent::Late { for_seq, answer, .. } => {
+                        (self.what, self.refers_to) = ("late".to_string(), Some(*for_seq));
+                        self.answer = answer.clone();
+                    }
+                    ExternalEvent::Fault { fault, found, .. } => {
+                        (self.what, self.item) = ("fault".to_string(), name(fault));
+                        self.reason = found.clone();
+                    }
                 }
             }
             Event::OfferOpened(offer) => {

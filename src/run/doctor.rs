@@ -2,6 +2,7 @@
 //! recordings, clocks, ports, trackers. Every finding names a remedy.
 
 mod devices;
+mod films;
 
 use std::fs;
 use std::io::{self, IsTerminal, Write};
@@ -53,6 +54,7 @@ pub fn examine(spec: &SessionSpec, kitchen: &Kitchen, out: &Path) -> DoctorRepor
     checks.extend(devices::display(spec));
     #[cfg(feature = "rerun")]
     checks.push(viewer());
+    checks.push(films::decoder());
     checks.extend(left_out());
     checks.extend(devices::lsl(spec));
     checks.extend(devices::gaze(spec, kitchen));
@@ -109,6 +111,7 @@ fn purpose(check: &str) -> &'static str {
         "wall clock" | "timer" => "for times in recordings",
         "wall display" => "for the participant's page",
         "viewer" => "for Rerun",
+        "ffmpeg" => "for films beside recordings",
         "lsl" => "for the Lab Streaming Layer",
         "build" => "for parts that this program was built without",
         _ => "for gaze",

@@ -11,6 +11,7 @@ mod display_probes;
 mod display_server;
 mod escapes;
 mod examples;
+mod films;
 mod fit;
 mod gathering;
 mod gaze;

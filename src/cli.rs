@@ -27,6 +27,7 @@ mod simulation;
 mod study;
 mod tournaments;
 mod tutorial_alone;
+mod video;
 mod wizard;
 
 use std::io::{IsTerminal, Write};
@@ -99,6 +100,7 @@ pub fn main() -> ExitCode {
         CliCommand::Exclude(args) => exclude(&args),
         CliCommand::Correct(args) => correct(&args),
         CliCommand::Codes(args) => data::codes(&args),
+        CliCommand::Video(args) => video::video(&args),
         CliCommand::Export(args) => exports::export(&args),
         CliCommand::Forget(args) => data::forget(&args),
         CliCommand::Doctor(args) => examine(&args),

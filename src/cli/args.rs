@@ -17,6 +17,7 @@ use super::review::ReviewArgs;
 use super::study::StudyArgs;
 use super::tournaments::{ProtocolArgs, TournamentArgs};
 use super::tutorial_alone::TutorialArgs;
+use super::video::VideoArgs;
 use super::wizard::{CompareArgs, TrainArgs};
 use tomcom_core::mind::fitting::HumanModelParameter;
 use tomcom_session::headless::SimulationShard;
@@ -57,6 +58,7 @@ pub(super) enum CliCommand {
     Exclude(ExcludeArgs),
     Correct(CorrectArgs),
     Codes(CodesArgs),
+    Video(VideoArgs),
     Export(ExportArgs),
     Forget(ForgetArgs),
     Doctor(DoctorArgs),

@@ -31,7 +31,8 @@ pub(super) struct CodesArgs {
     /// The folders of recordings, or their events.jsonl; or folders with recordings in them.
     #[arg(required = true, value_name = "RECORDING")]
     recordings: Vec<PathBuf>,
-    /// Import codes from this table, with the columns recording, rater (R1+R2: a consensus), press, cause, aspect.
+    /// Import codes from this table, with the columns recording, rater (R1+R2: a consensus), press, cause, aspect; or from
+    /// a file of ELAN (.eaf) or BORIS (.boris) that tomcom export wrote and raters annotated.
     #[arg(long, value_name = "FILE")]
     import: Option<PathBuf>,
     /// Import codes of raters who have no codes yet, and codes that change others, without asking.

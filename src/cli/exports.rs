@@ -9,6 +9,7 @@ use super::failure::Failure;
 use super::list::exists;
 use super::mcap_exports::{self, ExportedMcap};
 use super::output::{OutputFormat, print, progress};
+use tomcom_study::annotation_export::{self, AnnotationFormat, AnnotationSummary};
 use tomcom_study::bids_export::{self, BidsSummary};
 use tomcom_study::files::recordings;
 
@@ -16,9 +17,10 @@ use tomcom_study::files::recordings;
 ///
 /// As a BIDS data set (Brain Imaging Data Structure, 1.10 and later): a session for each recording with its events,
 /// gaze as eye-tracking recording, questionnaires as phenotype. As MCAP, for robotics tools: joints, frames and log in
-/// Foxglove's types, gaze, beliefs and events. The logs stay as they are.
+/// Foxglove's types, gaze, beliefs and events. As annotations beside the recording's films, for ELAN and BORIS, and as
+/// subtitles. The logs stay as they are.
 #[derive(Debug, Args)]
-#[command(group(ArgGroup::new("what").required(true).multiple(true).args(["bids", "mcap"])))]
+#[command(group(ArgGroup::new("what").required(true).multiple(true).args(["bids", "mcap", "elan", "boris", "vtt"])))]
 #[command(after_help = "Labels of participants are the letters and digits of their codes; what is changed is told.\n\
                   Examples: tomcom export sessions --bids ../bids\n          \
                   tomcom export sessions/2026-03-14-P07-1 --mcap\nMore: docs/exports.md")]
@@ -32,6 +34,19 @@ pub(super) struct ExportArgs {
     /// Write recording.mcap into the folder of each recording.
     #[arg(long)]
     mcap: bool,
+    /// Write recording.eaf for ELAN into the folder of each recording: a tier for presses, errors, signals, each false
+    /// belief (by the estimate), notes and each rater's codes, with the films of tomcom video.
+    #[arg(long)]
+    elan: bool,
+    /// Write recording.boris, a project of BORIS with the same, into the folder of each recording.
+    #[arg(long)]
+    boris: bool,
+    /// Write recording.vtt, the same as subtitles (WebVTT), into the folder of each recording.
+    #[arg(long)]
+    vtt: bool,
+    /// With --elan, --boris or --vtt: only presses and errors, for raters who are to code them blind.
+    #[arg(long)]
+    blind: bool,
     /// With --bids: also export what wizards and participants typed (notes, reasons, answers in words), which can
     /// contain names.
     #[arg(long, requires = "bids")]
@@ -48,6 +63,8 @@ struct ExportSummary {
     bids: Option<BidsSummary>,
     /// Summary of the MCAP files with their numbers of messages.
     mcap: Option<Vec<ExportedMcap>>,
+    /// Files of annotations.
+    annotations: Option<Vec<AnnotationSummary>>,
 }
 
 /// Runs the command `tomcom export`.
@@ -66,7 +83,29 @@ pub(super) fn export(args: &ExportArgs) -> Result<(), Failure> {
         files = Some(messages);
         text += &told;
     }
-    print(args.format, &ExportSummary { bids, mcap: files }, || text)
+    let asked =
+        [(args.elan, AnnotationFormat::Elan), (args.boris, AnnotationFormat::Boris), (args.vtt, AnnotationFormat::Vtt)];
+    let formats: Vec<AnnotationFormat> =
+        asked.into_iter().filter_map(|(is_asked, format)| is_asked.then_some(format)).collect();
+    if args.blind && formats.is_empty() {
+        let help = "--blind with --elan, --boris or --vtt";
+        return Err(Failure::Wrong(miette::miette!(help = help, "found --blind without an export of annotations")));
+    }
+    let mut annotations = None;
+    if !formats.is_empty() {
+        let bar = progress(recordings.len() as u64, "recordings");
+        let done = tomcom_study::parallel::each(
+            &recordings,
+            |recording| annotation_export::export(recording, &formats, args.blind),
+            || bar.inc(1),
+        );
+        bar.finish_and_clear();
+        let summaries: Vec<AnnotationSummary> =
+            done.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
+        text += &annotation_export::describe(&summaries);
+        annotations = Some(summaries);
+    }
+    print(args.format, &ExportSummary { bids, mcap: files, annotations }, || text)
 }
 
 /// Collects the recordings at or below these paths, each recording once.

@@ -6,7 +6,7 @@ use super::failure::Failure;
 use super::output::put;
 use crate::run::open_viewer::{
     OngoingRecording, RerunReviewOutcome, RerunReviewRequest, RerunStreamFile, RerunViewerError, landmarks, review,
-    running, save, until_asked_to_end,
+    running, save, unshown_films, until_asked_to_end,
 };
 use tomcom_core::base::text::PathText;
 use tomcom_core::base::time::SessionTime;
@@ -55,6 +55,10 @@ pub(super) fn open(
 ) -> Result<(), Failure> {
     for one in running(&recordings)? {
         put(&still_running(&one))?;
+    }
+    let is_beside_log = save == Some(None);
+    for unshown in if is_beside_log { Vec::new() } else { unshown_films(&recordings)? } {
+        put(&format!("not shown: {unshown}\n"))?;
     }
     let asked = RerunReviewRequest { recordings, save, web, at };
     match review(&asked)? {

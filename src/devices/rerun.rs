@@ -19,10 +19,12 @@ use re_sdk::log::{ChunkBatcherConfig, TimeColumn};
 use re_sdk::sink::FileSink;
 use re_sdk::{AsComponents, RecordingStream, RecordingStreamBuilder, SerializedComponentBatch};
 use re_sdk_types::archetypes;
-use re_sdk_types::components::{Color, FillMode, InterpolationMode, MarkerShape, TextLogLevel};
+use re_sdk_types::components::{
+    Color, FillMode, InterpolationMode, MarkerShape, MediaType, TextLogLevel, VideoTimestamp,
+};
 use re_sdk_types::datatypes::Quaternion;
 
-use self::blueprint::{APPLICATION, SESSION_TIME, ViewerLayout, ViewerStart};
+use self::blueprint::{APPLICATION, SESSION_TIME, ViewerLayout, ViewerStart, film_entity};
 pub use self::blueprint::{ShownRecording, TRIAL_TIME};
 pub use self::viewer_page::WebViewer;
 use self::viewer_server::ViewerServer;
@@ -66,6 +68,14 @@ const LOWEST: f32 = -20.0;
 pub struct StreamIdentity {
     pub id: String,
     pub name: String,
+}
+
+/// A moment of a film: the time in the film, on the trial's clock, and of the session.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FilmFrame {
+    pub film: SessionTime,
+    pub trial: SessionTime,
+    pub session: SessionTime,
 }
 
 /// Outputs of a Rerun stream: a file, a server, or both.
@@ -175,6 +185,34 @@ impl RerunWriter {
             }
         }
         moment.rows.len() as u64
+    }
+
+    /// Writes a film (MP4), by its number from 0, with the moments at which its frames are seen.
+    pub fn film(&mut self, lane: &ShownRecording, film: usize, content: Vec<u8>, frames: &[FilmFrame]) {
+        let entity = film_entity(lane, film);
+        let asset = archetypes::AssetVideo::from_file_contents(content, None::<MediaType>).as_serialized_batches();
+        let whole = |time: SessionTime| i64::try_from(time.0).unwrap_or(i64::MAX);
+        let times = frames.iter().map(|frame| VideoTimestamp::from_nanos(whole(frame.film)));
+        let frames_of = archetypes::VideoFrameReference::update_fields().with_many_timestamp(times);
+        let timelines = || {
+            [
+                TimeColumn::new_duration_nanos(
+                    TRIAL_TIME,
+                    frames.iter().map(|frame| whole(frame.trial)).collect::<Vec<i64>>(),
+                ),
+                TimeColumn::new_duration_nanos(
+                    SESSION_TIME,
+                    frames.iter().map(|frame| whole(frame.session)).collect::<Vec<i64>>(),
+                ),
+            ]
+        };
+        for one in &self.streams {
+            one.log(&entity, true, &asset);
+            // Writing fails only if components cannot be serialised, and these components can.
+            if let Ok(columns) = frames_of.clone().columns_of_unit_batches() {
+                let _ = one.stream.send_columns(entity.as_str(), timelines(), columns);
+            }
+        }
     }
 
     /// Closes the stream's file, to which nothing is written any more; returns false if there is none. Viewers still get

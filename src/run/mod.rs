@@ -10,6 +10,12 @@ pub mod doctor;
 pub mod error;
 mod event_loop;
 pub mod files;
+pub mod film;
+#[cfg(unix)]
+mod film_player;
+#[cfg(not(unix))]
+#[path = "without_film_player.rs"]
+mod film_player;
 pub mod forget;
 mod frames;
 pub mod key_file;

@@ -11,23 +11,29 @@ use tempfile::TempPath;
 use crate::run::terminal::asked_to_end;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::mind::dirichlet::DirichletBelief;
-use tomcom_devices::rerun::{RerunWriter, ShownRecording, StreamIdentity, StreamOutlets, WebViewer, uri};
+use tomcom_devices::rerun::{FilmFrame, RerunWriter, ShownRecording, StreamIdentity, StreamOutlets, WebViewer, uri};
 use tomcom_devices::rrd::{self, RRD_NAME, RerunFileState};
 use tomcom_devices::scene::entity_content::slug;
 use tomcom_devices::scene::{SceneInputs, SceneUpdate, SessionScene, landmark};
 use tomcom_devices::stream::{PORTS, is_free};
 use tomcom_devices::stream_head;
 use tomcom_devices::viewer::{self, ViewerAvailability};
-use tomcom_session::TimestampedEvent;
-use tomcom_session::files::file_error::{FileError, FileResult};
+use tomcom_session::files::file_error::{FileError, FileResult, read_bytes};
 use tomcom_session::files::overwrite;
 use tomcom_session::files::replace_file::Replacement;
+use tomcom_session::log::video_file::{self, AttachedFilm};
 use tomcom_session::log::{LOG_NAME, LogReader, RecordingLock, RecordingWriteError};
 use tomcom_session::replay::RecordingReplay;
+use tomcom_session::{Session, TimestampedEvent};
 
 /// First network ports that are tried for the stream's server and for the web viewer.
 const SERVER_PORT: u16 = 9878;
 const WEB_PORT: u16 = 9090;
+/// Largest film that a stream has, in bytes.
+const MOST_FILM: u64 = 1 << 30;
+/// Time between two frames of a film that was not decoded, and the least one, in seconds.
+const USUAL_FRAME_S: f64 = 1.0 / 30.0;
+const LEAST_FRAME_S: f64 = 1.0 / 240.0;
 /// Period of polling a stream file that another program is writing.
 const LOOK: Duration = Duration::from_millis(50);
 /// Largest number of characters that recordings' names take in the name of a temporary stream file.
@@ -195,7 +201,7 @@ fn serve(
     at: Option<SessionTime>,
     because: &'static str,
 ) -> Result<RerunReviewOutcome, RerunViewerError> {
-    let playing = playing(recordings)?;
+    let playing = playing(recordings, true)?;
     let (server, web, viewer) = ports(at).map_err(RerunViewerError::Web)?;
     let outlets = StreamOutlets { file: None, server: Some((server, true)) };
     let writer = write(playing, recordings, &outlets)?.map_err(RerunViewerError::Web)?;
@@ -226,6 +232,10 @@ fn saved(recordings: &[PathBuf], place: StreamPlace) -> Result<RerunStreamFile, 
     let (mut locked, mut because, mut logs, mut temporary) = (None, None, None, None);
     let path = match (place, recordings) {
         (StreamPlace::File(place), _) => place.to_path_buf(),
+        // Films are large, and stand beside the log already.
+        (StreamPlace::Anywhere, [recording]) if !films(recording)?.is_empty() => {
+            temporary.insert(elsewhere(recordings)?).to_path_buf()
+        }
         (_, [recording]) => {
             let log = LogReader::open(recording)?;
             let (folder, parts) = (log.folder().to_path_buf(), log.logs());
@@ -254,7 +264,8 @@ fn saved(recordings: &[PathBuf], place: StreamPlace) -> Result<RerunStreamFile, 
     if locked.is_none() {
         check_foreign(&path)?;
     }
-    let sealed = put(recordings, &path)?.and_then(|()| logs.map_or(Ok(()), |logs| rrd::seal(&path, &logs)));
+    let with_films = locked.is_none();
+    let sealed = put(recordings, &path, with_films)?.and_then(|()| logs.map_or(Ok(()), |logs| rrd::seal(&path, &logs)));
     drop(locked);
     let kept = |()| temporary.map_or(Ok(()), |path| path.keep().map(drop).map_err(io::Error::from));
     match sealed.and_then(kept) {
@@ -275,13 +286,13 @@ fn check_foreign(path: &Path) -> Result<(), RerunViewerError> {
 
 /// Builds the stream file of these recordings. An existing stream file is replaced only when the new one is complete,
 /// so a damaged log does not destroy it.
-fn put(recordings: &[PathBuf], path: &Path) -> Result<io::Result<()>, RerunViewerError> {
+fn put(recordings: &[PathBuf], path: &Path, with_films: bool) -> Result<io::Result<()>, RerunViewerError> {
     let begun = match Replacement::begin(path) {
         Ok(begun) => begun,
         Err(reason) => return Ok(Err(reason)),
     };
     let outlets = StreamOutlets { file: Some(begun.new_path().to_path_buf()), server: None };
-    let written = write(playing(recordings)?, recordings, &outlets)?;
+    let written = write(playing(recordings, with_films)?, recordings, &outlets)?;
     Ok(written.and_then(|_| begun.finish()))
 }
 
@@ -305,16 +316,21 @@ fn name(recording: &Path) -> String {
 
 /// Prepares recordings for one stream: a single recording at the root of the scene, several below their names with
 /// participant and arm.
-fn playing(recordings: &[PathBuf]) -> FileResult<Vec<Playing>> {
+fn playing(recordings: &[PathBuf], with_films: bool) -> FileResult<Vec<Playing>> {
     let one = |(nth, recording): (usize, &PathBuf)| {
-        let playing = Playing::open(recording)?;
+        let mut playing = Playing::open(recording)?;
+        if with_films {
+            playing.films = films(recording)?.into_iter().filter(|(path, _)| unplayable(path).is_none()).collect();
+            playing.lane.films = playing.films.len();
+        }
         if recordings.len() == 1 {
             return Ok(playing);
         }
         let name = name(recording);
         let session = playing.replay.session();
         let title = format!("{} {} ({name})", session.spec.participant.code, session.study_arm().title());
-        Ok(Playing { lane: ShownRecording { root: format!("{}_{}", nth + 1, slug(&name)), title }, ..playing })
+        let root = format!("{}_{}", nth + 1, slug(&name));
+        Ok(Playing { lane: ShownRecording { root, title, ..playing.lane.clone() }, ..playing })
     };
     recordings.iter().enumerate().map(one).collect()
 }
@@ -341,6 +357,41 @@ fn write(
     Ok(Ok(writer))
 }
 
+/// The films of a recording, with their paths.
+fn films(recording: &Path) -> FileResult<Vec<(PathBuf, AttachedFilm)>> {
+    let folder = LogReader::open(recording)?.folder().to_path_buf();
+    let films = video_file::read(&folder)?.films;
+    Ok(films.into_iter().map(|film| (film.path(&folder), film)).collect())
+}
+
+/// Why Rerun cannot show a film, in words.
+fn unplayable(film: &Path) -> Option<String> {
+    let path = film.display();
+    let end = film.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    match film.metadata() {
+        Err(reason) => Some(format!("{path}: {reason}")),
+        Ok(data) if data.len() > MOST_FILM => Some(format!(
+            "{path}: too large for Rerun; a smaller copy: ffmpeg -i FILM -vf scale=-2:540 -c:v libx264 -an COPY.mp4, and attach it"
+        )),
+        Ok(_) if end != "mp4" && end != "m4v" => Some(format!(
+            "{path}: Rerun plays MP4; a copy in H.264: ffmpeg -i FILM -c:v libx264 -an COPY.mp4, and attach it"
+        )),
+        Ok(_) => None,
+    }
+}
+
+/// Films of these recordings that Rerun does not show, and why, in words.
+///
+/// # Errors
+/// A recording cannot be read.
+pub fn unshown_films(recordings: &[PathBuf]) -> FileResult<Vec<String>> {
+    let mut unshown = Vec::new();
+    for recording in recordings {
+        unshown.extend(films(recording)?.iter().filter_map(|(path, _)| unplayable(path)));
+    }
+    Ok(unshown)
+}
+
 /// Errors, signals and beginning false beliefs of a recording, as the viewer shows them, each with its time on the
 /// trial's clock.
 ///
@@ -354,18 +405,36 @@ pub fn landmarks(recording: &Path) -> FileResult<Vec<(SessionTime, String)>> {
     Ok(found)
 }
 
+/// When the frames of a film are seen, in a session that is over.
+fn frames(film: &AttachedFilm, session: &Session) -> Vec<FilmFrame> {
+    let step_s = film.frame_ms.map_or(USUAL_FRAME_S, |frame_ms| (frame_ms / 1e3).max(LEAST_FRAME_S));
+    let last = session.trial_clock(session.time);
+    let frame = |number: u64| {
+        let film_s = number as f64 * step_s;
+        let at = SessionTime::from_secs_f64(film.session_s(film_s));
+        let trial = session.trial_clock_at(at).min(last);
+        FilmFrame { film: SessionTime::from_secs_f64(film_s), trial, session: at }
+    };
+    // What the camera saw before the session began is not shown.
+    let first = (film.film_s(SessionTime::ZERO).max(0.0) / step_s).ceil() as u64;
+    let is_filmed = |frame: &FilmFrame| film.length_s.is_none_or(|length_s| frame.film.as_secs_f64() < length_s);
+    (first..).map(frame).take_while(|frame| frame.session <= session.time && is_filmed(frame)).collect()
+}
+
 /// A recording that is being written to a stream.
 struct Playing {
     replay: RecordingReplay,
     scene: SessionScene,
     lane: ShownRecording,
+    /// Films that are shown, with their paths.
+    films: Vec<(PathBuf, AttachedFilm)>,
 }
 
 impl Playing {
     fn open(recording: &Path) -> FileResult<Playing> {
         let replay = RecordingReplay::open(recording)?;
         let scene = SessionScene::new(replay.session(), 0);
-        Ok(Playing { replay, scene, lane: ShownRecording::default() })
+        Ok(Playing { replay, scene, lane: ShownRecording::default(), films: Vec::new() })
     }
 
     /// Text that tells recordings of the same name apart: the time at which the recording began.
@@ -379,13 +448,20 @@ impl Playing {
         writer.fixed(&self.lane, &self.scene.fixed());
         let (opening, lane) = (self.scene.opening(), self.lane.clone());
         writer.moment(&lane, &opening);
-        self.play(|moment| {
+        let films = std::mem::take(&mut self.films);
+        let session = self.play(|moment| {
             writer.moment(&lane, moment);
-        })
+        })?;
+        for (number, (path, film)) in films.iter().enumerate() {
+            let content = read_bytes(path, MOST_FILM);
+            let content = content.map_err(|reason| FileError::unreadable(path, reason, "the film in video.json"))?;
+            writer.film(&lane, number, content, &frames(film, &session));
+        }
+        Ok(())
     }
 
     /// Passes on all updates of the scene, in the order of time.
-    fn play(mut self, mut show: impl FnMut(&SceneUpdate)) -> FileResult<()> {
+    fn play(mut self, mut show: impl FnMut(&SceneUpdate)) -> FileResult<Session> {
         let mut held: Option<(TimestampedEvent, Option<DirichletBelief>)> = None;
         loop {
             let next = self.replay.step()?;
@@ -396,7 +472,7 @@ impl Playing {
                 let derived = SceneInputs { judged, belief: belief.as_ref().filter(|_| is_last) };
                 self.scene.see(&stamped, derived).iter().for_each(&mut show);
             }
-            let Some(next) = next else { return Ok(()) };
+            let Some(next) = next else { return Ok(self.replay.follower.session) };
             let wants = self.scene.wants_belief(next.stamped.time);
             let belief = wants.then(|| self.replay.follower.filter.belief().clone());
             held = Some((next.stamped, belief));

@@ -8,20 +8,21 @@ use std::time::{Duration, Instant};
 use super::comparison_thread::ComparisonThreadHandle;
 use super::error::{ReviewError, TerminalError};
 use super::event_loop::{self, ConsoleShell, LoopEvent, ShellView};
+use super::film_player::{self, FilmPlayer};
 use super::operator_station::OperatorStation;
 use super::rater_files;
 use super::seekable_replay::SeekableReplay;
 use crate::console::coding::RaterSession;
 use crate::console::console_model::NoticeLevel;
 use crate::console::console_model::SenderComparisonView;
-use crate::console::console_model::{Playback, ReplayAction};
+use crate::console::console_model::{Playback, ReplayAction, SPEEDS};
 use crate::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, update};
 use crate::run::key_file::key_map;
 use crate::run::terminal::TerminalScreen;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_session::history::wording;
-use tomcom_session::log::{LogEnding, RecordingLock};
+use tomcom_session::log::{LogEnding, RecordingLock, video_file};
 use tomcom_session::replay::ReplayLandmark;
 use tomcom_session::watcher::{SenderComparisonFollower, SenderComparisonSettings};
 
@@ -100,6 +101,8 @@ struct Review {
     comparison: Option<ComparisonThreadHandle>,
     /// Number of events that were read when the marks on the bar of the recording were made.
     marked: usize,
+    /// Windows with the recording's films.
+    players: Vec<FilmPlayer>,
 }
 
 impl Review {
@@ -128,6 +131,11 @@ impl Review {
         let excluded = film.standing()?.excluded.is_some();
         let running = !follow && film.replay.log().ending() == LogEnding::Running;
         model.playback = Some(Playback { excluded, running, ..Playback::new(name) });
+        let folder = film.replay.log().folder();
+        let (players, unshown) = film_player::open_all(&video_file::read(folder)?.films, folder);
+        if let Some(why) = unshown {
+            model.say(NoticeLevel::Done, format!("the film of this recording is not shown: {why}"));
+        }
         let now = Instant::now();
         let mut review = Review {
             film,
@@ -141,6 +149,7 @@ impl Review {
             dirty: true,
             comparison,
             marked: 0,
+            players,
         };
         review.tell(0);
         let start = review.film.trial_start();
@@ -247,6 +256,22 @@ impl Review {
         self.playback(|playback| playback.marks = marks.into());
     }
 
+    /// Lets the films follow the replay.
+    fn show_films(&mut self) {
+        let (now, before) = (self.now, self.players.len());
+        let speed = match &self.model.playback {
+            Some(playback) if playback.follows => 1.0,
+            // At full speed the films stand until the replay does.
+            Some(playback) if playback.playing && SPEEDS[playback.speed].is_finite() => SPEEDS[playback.speed],
+            _ => 0.0,
+        };
+        self.players.retain_mut(|player| player.show(now, speed));
+        if self.players.len() < before {
+            self.model.say(NoticeLevel::Done, "the window with the film was closed".to_string());
+            self.dirty = true;
+        }
+    }
+
     fn is(&self, what: impl FnOnce(&Playback) -> bool) -> bool {
         self.model.playback.as_ref().is_some_and(what)
     }
@@ -327,6 +352,7 @@ impl ConsoleShell for Review {
 
     fn advance(&mut self) -> bool {
         self.play();
+        self.show_films();
         if let (Some(newest), Some(compared)) =
             (self.comparison.as_ref().and_then(ComparisonThreadHandle::newest), &mut self.model.comparison)
         {

@@ -45,8 +45,12 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
         }
         Event::TrialPaused => pause(session, now),
         Event::TrialResumed => resume(session, now, &mut effects),
-        Event::TrialEnded { reason } => end_trial(session, now, *reason, &mut effects),
+        Event::TrialEnded { reason } => {
+            session.cue = Some(stamped.seq);
+            end_trial(session, now, *reason, &mut effects);
+        }
         Event::TrialAborted { reason } => {
+            session.cue = Some(stamped.seq);
             session.aborted = Some(reason.clone());
             end_trial(session, now, TrialEndReason::Aborted, &mut effects);
         }

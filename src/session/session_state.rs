@@ -59,7 +59,7 @@ pub struct Session {
     pub external: ExternalStatus,
     /// Whether a console shows the session to a person.
     pub has_console: bool,
-    /// The latest event for which the participant's display flashes (trial start, signal).
+    /// The latest event for which the participant's display flashes (trial start, signal, trial end).
     pub cue: Option<u64>,
     /// When the wizard sent the last signal.
     pub signalled_at: Option<SessionTime>,

@@ -33,7 +33,7 @@ pub struct DisplaySpec {
     pub arm: RobotDepiction,
     /// Whether the corners show AprilTags, by which an eye tracker finds the display.
     pub tags: bool,
-    /// Whether a square flashes at the start of the trial and at signals, to synchronise video recordings.
+    /// Whether a square flashes at the start and the end of the trial and at signals, to synchronise video recordings.
     pub flash: bool,
     /// Whether the page says why a press has no effect.
     pub reasons: bool,
@@ -152,7 +152,7 @@ pub enum DisplayEvent {
         height_px: u32,
     },
     Lost,
-    /// The page has drawn a frame with the flash for an event (trial start, signal).
+    /// The page has drawn a frame with the flash for an event (trial start, signal, trial end).
     Drawn {
         /// Sequence number of that event.
         cue: u64,

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use crate::analysis::annotations::codes::{self as annotations, AnnotatedCode};
 use crate::figures::IdenticalCodes;
 use tomcom_core::base::text::{count, decimal};
 use tomcom_core::measures::raters::{
@@ -13,7 +14,7 @@ use tomcom_core::measures::raters::{
     unsettled,
 };
 use tomcom_session::error_list::ListedError;
-use tomcom_session::files::file_error::FileResult;
+use tomcom_session::files::file_error::{self, FileResult};
 use tomcom_session::history::wording;
 use tomcom_session::log::rater_codes::{self, RaterCodeRow};
 use tomcom_session::log::{RecordingError, RecordingLock, RecordingWriteError, consensus_file};
@@ -378,7 +379,7 @@ pub struct ImportableCodes {
 /// Reads a table of codes of these recordings. Errors: the file cannot be read, a row does not refer to an error of
 /// these recordings or names no rater, or two raters differ in capital letters only.
 pub fn read(recordings: &[CodedRecording], file: &Path) -> FileResult<ImportableCodes> {
-    let (text, rows) = rater_codes::read_export(file)?;
+    let (text, rows) = rows_of(recordings, file)?;
     let wrong =
         |row: &RaterCodeRow, found: String, remedy: &str| rater_codes::wrong_line(file, &text, row.line, found, remedy);
     let names: Vec<String> = recordings.iter().map(CodedRecording::name).collect();
@@ -417,6 +418,31 @@ pub fn read(recordings: &[CodedRecording], file: &Path) -> FileResult<Importable
     let known_raters = known.into_iter().map(str::to_string).collect();
     let new_raters = new.into_iter().collect();
     Ok(ImportableCodes { file: file.to_path_buf(), text, rows: imported, new_raters, changed, known_raters })
+}
+
+/// The text of a file with codes, and its rows: a table, or what was annotated in ELAN or BORIS.
+fn rows_of(recordings: &[CodedRecording], file: &Path) -> FileResult<(String, Vec<RaterCodeRow>)> {
+    let end = file.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    let (text, found) = match end.as_str() {
+        "eaf" => {
+            let text = file_error::read_text(file)?;
+            let found = annotations::from_elan(file, &text)?;
+            (text, found)
+        }
+        // A project stands on one line, of which no message can show a part.
+        "boris" => (String::new(), annotations::from_boris(file, &file_error::read_text(file)?)?),
+        _ => return rater_codes::read_export(file),
+    };
+    let names: Vec<String> = recordings.iter().map(CodedRecording::name).collect();
+    let rows = found.into_iter().map(|AnnotatedCode { line, recording, rater, error, code }| {
+        // What is about no recording, or about no error of it, is refused by name below.
+        let only = || names.first().filter(|_| names.len() == 1).cloned();
+        let recording = recording.or_else(only).unwrap_or_default();
+        let index = names.iter().position(|name| *name == recording);
+        let press = index.and_then(|index| recordings[index].codable.errors.get(error.saturating_sub(1) as usize));
+        RaterCodeRow { line, recording, rater, press: press.copied().unwrap_or(u64::MAX), code }
+    });
+    Ok((text, rows.collect()))
 }
 
 impl ImportableCodes {

@@ -22,13 +22,14 @@
 //! - [`report`] builds the page of the report, with [`charts`].
 //!
 //! Commands over recordings: [`pass`] reads each once for a study; [`fit`], [`similarity`], [`codes`],
-//! [`bids_export`] and `mcap_export`. [`analysis`] has computation over events, [`files`] what is read
+//! [`bids_export`], [`annotation_export`] and `mcap_export`. [`analysis`] has computation over events, [`files`] what is read
 //! and written.
 
 #![deny(unsafe_code)]
 
 pub mod acceptance;
 pub mod analysis;
+pub mod annotation_export;
 pub mod arm_comparison;
 pub mod arm_table;
 pub mod bids_export;

@@ -9,6 +9,7 @@ use mcap::{McapError, WriteOptions, Writer};
 use serde::Serialize;
 
 use crate::analysis::foxglove::{McapChannel, McapMessage, McapMessageConverter};
+use crate::files::recordings::open_closed;
 use tomcom_core::base::text::{PathText, count};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_session::LogHeader;
@@ -16,7 +17,7 @@ use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::files::overwrite;
 use tomcom_session::files::replace_file::Replacement;
 use tomcom_session::follower::SessionFollower;
-use tomcom_session::log::{LOG_NAME, LogEnding, LogReader, MCAP_NAME};
+use tomcom_session::log::MCAP_NAME;
 use tomcom_session::study_arm::StudyArm;
 
 #[derive(Clone, Debug, Serialize)]
@@ -28,18 +29,7 @@ pub struct McapSummary {
 /// Exports a recording as an MCAP file in the recording's folder. Errors: the recording cannot be read or is still
 /// being written, the path is not a recording's folder, or the file cannot be written.
 pub fn export(recording: &Path) -> FileResult<McapSummary> {
-    let mut log = LogReader::open(recording)?;
-    let wrong =
-        |found: &str, remedy: &str| Err(FileError::from_finding(recording, found.to_string(), remedy.to_string()));
-    if log.ending() == LogEnding::Running {
-        return wrong("a recording that is still being written", "a recording whose session is over");
-    }
-    if !log.path().ends_with(LOG_NAME) {
-        return wrong(
-            "a log that is not called events.jsonl",
-            "the folder of a recording, into which its MCAP is written",
-        );
-    }
+    let mut log = open_closed(recording)?;
     let folder = log.folder().to_path_buf();
     let unwritable =
         |reason: io::Error| FileError::not_written(&folder, reason, "a folder of a recording, which can be written to");

@@ -13,6 +13,7 @@ mod escapes;
 mod examples;
 #[cfg(unix)]
 mod external;
+mod films;
 mod fit;
 mod gathering;
 mod gaze;

@@ -167,7 +167,7 @@ def shows_signals(tomcom, browser, folder, seed):
         console.quit()
     events = verified(tomcom, folder)
     drawn = [event["cue"] for event in events if event["kind"] == "display" and event["what"] == "drawn"]
-    cues = [event["seq"] for event in events if event["kind"] in ("trial_started", "signal_shown")]
+    cues = [event["seq"] for event in events if event["kind"] in ("trial_started", "signal_shown", "trial_ended")]
     assert drawn == cues, (drawn, cues)
     print("signals: recipe and highlight appear, are taken back, are told to be drawn; a second page only watches", flush=True)
 

@@ -393,3 +393,32 @@ fn a_recording_that_was_saved_elsewhere_is_found_by_where_it_belongs() {
     assert_eq!(lab.run(&["forget", "P01", "--yes", "--in", temporary]).0, Some(0), "whoever means those says so");
     assert!(!other.exists() && !without_a_note.exists());
 }
+
+#[test]
+fn films_go_with_the_recording_in_whose_folder_they_lie_and_others_are_named() {
+    let lab = RecordingsFolder::of_two_people("films");
+    let outside = lab.temporary.join("room.mp4");
+    lab.put("seed1-P01-1/hands.mp4", "a film");
+    lab.put("seed1-P01-1/other.mp4", "a film that belongs to nothing");
+    fs::write(&outside, "a film").expect("written");
+    for film in [lab.at("seed1-P01-1/hands.mp4"), outside.clone()] {
+        let (recording, film) = (lab.at("seed1-P01-1").display().to_string(), film.display().to_string());
+        ended(
+            lab.run(&["video", "attach", &recording, &film, "--offset", "1.5"]),
+            0,
+            &["1.500 s of the film, as given"],
+        );
+    }
+    let text = lab.text("seed1-P01-1/video.json");
+    assert!(text.contains("\"hands.mp4\"") && text.contains("room.mp4\""), "{text}");
+    let told = ended(
+        lab.forget(&["P01", "--yes"]),
+        1,
+        &[
+            "hands.mp4, session.toml, video.json",
+            "a film of the participant's recording seed1-P01-1, outside of its folder",
+        ],
+    );
+    assert!(told.contains(&outside.display().to_string()) && outside.exists(), "{told}");
+    assert!(!lab.at("seed1-P01-1/hands.mp4").exists() && lab.at("seed1-P01-1/other.mp4").exists(), "{told}");
+}

@@ -41,6 +41,8 @@ pub struct ShownRecording {
     /// Path of the entity that contains all entities of the recording; empty for the top level.
     pub root: String,
     pub title: String,
+    /// Number of films beside the kitchen.
+    pub films: usize,
 }
 
 /// A property of a view: its path in the blueprint, and its components.
@@ -117,7 +119,7 @@ fn alone(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike
     let safety = lanes(lane, "Safety", &["robot/safety/**"], properties);
     let tabs = Tabs::new([arm, beliefs, benefit, probes, joints, forces, safety]);
     let below = Horizontal::new([overview(lane, properties), tabs.into()]).with_column_shares([3.0, 2.0]);
-    let left = Vertical::new([kitchen(lane, properties), below.into()]).with_row_shares([5.0, 3.0]);
+    let left = Vertical::new([seen(lane, properties), below.into()]).with_row_shares([5.0, 3.0]);
     let side = Vertical::new([now(lane), happened(lane, properties)]).with_row_shares([1.0, 1.0]);
     Horizontal::new([left.into(), side.into()]).with_column_shares([5.0, 3.0]).into()
 }
@@ -126,7 +128,7 @@ fn alone(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike
 fn beside(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
     let curves = Tabs::new([overview(lane, properties), beliefs(lane, properties), benefit(lane, properties)]);
     let words = Horizontal::new([now(lane), happened(lane, properties)]);
-    Vertical::new([kitchen(lane, properties), curves.into(), words.into()]).with_row_shares([5.0, 3.0, 4.0]).into()
+    Vertical::new([seen(lane, properties), curves.into(), words.into()]).with_row_shares([5.0, 3.0, 4.0]).into()
 }
 
 fn path(lane: &ShownRecording, entities: &str) -> String {
@@ -150,6 +152,25 @@ fn with(
         properties.push((format!("{}/{name}", view.blueprint_path()), property.as_serialized_batches()));
     }
     view
+}
+
+/// The entity of a film, by its number from 0.
+pub(super) fn film_entity(lane: &ShownRecording, film: usize) -> String {
+    path(lane, &format!("films/{}", film + 1))
+}
+
+/// The kitchen, and the films of the recording beside it.
+fn seen(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
+    let kitchen = kitchen(lane, properties);
+    if lane.films == 0 {
+        return kitchen;
+    }
+    let films = (0..lane.films).map(|film| {
+        let (name, entity) = (format!("Film {}", film + 1), film_entity(lane, film));
+        Spatial2DView::new(titled(lane, &name)).with_origin(entity.clone()).with_contents([entity]).into()
+    });
+    let films = Vertical::new(films.collect::<Vec<ContainerLike>>());
+    Horizontal::new([kitchen, films.into()]).with_column_shares([3.0, 2.0]).into()
 }
 
 fn kitchen(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {

@@ -24,9 +24,10 @@ use tomcom_session::files::replace_file::replaced_name;
 use tomcom_session::files::rescue::{RESCUE_NOTE_NAME, RESCUED, RescueNote};
 use tomcom_session::log::consensus_file::CONSENSUS_NAME;
 use tomcom_session::log::rater_codes::is_codes_file;
+use tomcom_session::log::video_file::{self, VIDEO_NAME};
 use tomcom_session::log::{
-    CODES_LOCK, CORRECTION_NAME, EXCLUSION_NAME, LOCK_NAME, LOG_NAME, MCAP_NAME, RRD_NAME, SETTINGS_NAME,
-    is_damaged_log,
+    ANNOTATION_NAMES, CODES_LOCK, CORRECTION_NAME, EXCLUSION_NAME, LOCK_NAME, LOG_NAME, MCAP_NAME, RRD_NAME,
+    SETTINGS_NAME, is_damaged_log,
 };
 use tomcom_study::analysis::lesson_report::WizardTrainingRecord;
 use tomcom_study::files::bids_tree;
@@ -176,6 +177,7 @@ impl ForgetSearch {
         if is_recording {
             self.found.recordings.push(folder.to_path_buf());
         }
+        let films = if is_recording { self.films(folder) } else { BTreeSet::new() };
         if is_own {
             self.found.folders.push(folder.to_path_buf());
         }
@@ -185,13 +187,37 @@ impl ForgetSearch {
                 EntryKind::Folder => self.enter(&path, is_own),
                 // The lock file of a recording is removed by the program that holds the lock.
                 EntryKind::File if is_recording && is_lock(&path) => {}
-                EntryKind::File if is_recording && is_of_recording(&path) => self.found.recording_files.push(path),
+                EntryKind::File if is_recording && (is_of_recording(&path) || films.contains(&file_name(&path))) => {
+                    self.found.recording_files.push(path);
+                }
                 EntryKind::File => files.push(path),
                 EntryKind::Other if is_own => self.leave_strange(&path),
                 EntryKind::Other => {}
             }
         }
         self.folders.push(WalkedFolder { path: folder.to_path_buf(), files, is_own });
+    }
+
+    /// Names of the films that lie in the folder of one of the participant's recordings; films elsewhere are listed as kept.
+    fn films(&mut self, folder: &Path) -> BTreeSet<String> {
+        let films = match video_file::read(folder) {
+            Ok(films) => films.films,
+            Err(error) => {
+                let path = folder.join(VIDEO_NAME);
+                self.leave(&path, format!("it does not say where films of the participant are: {error}"));
+                return BTreeSet::new();
+            }
+        };
+        let (inside, outside): (Vec<_>, Vec<_>) = films.into_iter().partition(|film| film.is_inside());
+        for film in outside {
+            let gone = if film.file.exists() { "" } else { " (there is no such file there now)" };
+            let reason = format!(
+                "a film of the participant's recording {}, outside of its folder{gone}; it is to be deleted by hand",
+                file_name(folder)
+            );
+            self.leave(&film.file, reason);
+        }
+        inside.iter().map(|film| file_name(&film.file)).collect()
     }
 
     /// Looks for recordings that were rescued from a folder below the folder `home`, and for Rerun streams of recordings
@@ -336,11 +362,12 @@ fn entries(folder: &Path) -> io::Result<Vec<(PathBuf, EntryKind)>> {
 
 /// Whether the program writes a file of this name into the folder of a recording, or leaves it there when it is killed.
 fn is_of_recording(path: &Path) -> bool {
-    const NAMES: [&str; 8] = [
+    const NAMES: [&str; 9] = [
         LOG_NAME,
         SETTINGS_NAME,
         RRD_NAME,
         MCAP_NAME,
+        VIDEO_NAME,
         EXCLUSION_NAME,
         CORRECTION_NAME,
         CONSENSUS_NAME,
@@ -349,7 +376,11 @@ fn is_of_recording(path: &Path) -> bool {
     let name = file_name(path);
     let name = replaced_name(&name);
     let seal = name.strip_suffix(".toml").unwrap_or_default();
-    is_codes_file(name) || is_damaged_log(name) || NAMES.contains(&name) || seal == RRD_NAME
+    is_codes_file(name)
+        || is_damaged_log(name)
+        || NAMES.contains(&name)
+        || ANNOTATION_NAMES.contains(&name)
+        || seal == RRD_NAME
 }
 
 fn is_lock(path: &Path) -> bool {

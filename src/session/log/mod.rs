@@ -9,6 +9,7 @@ pub mod rater_codes;
 mod reader;
 mod same_log;
 mod simulated_log;
+pub mod video_file;
 mod writer;
 
 use std::path::{Path, PathBuf};
@@ -32,6 +33,8 @@ const DAMAGED: &str = ".damaged";
 pub const SETTINGS_NAME: &str = "session.toml";
 pub const RRD_NAME: &str = "recording.rrd";
 pub const MCAP_NAME: &str = "recording.mcap";
+/// Annotations for ELAN and BORIS, and subtitles.
+pub const ANNOTATION_NAMES: [&str; 3] = ["recording.eaf", "recording.boris", "recording.vtt"];
 
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum RecordingWriteError {

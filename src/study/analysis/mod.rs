@@ -1,8 +1,10 @@
 //! Computation over sessions and recordings: judged presses and estimates, fits, comparisons and summaries. Everything
 //! in this module is a function of events that the caller passes in; files, threads and clocks belong to the caller.
 
+pub mod annotations;
 pub mod bids;
 pub mod comparison_summary;
+pub mod film_flashes;
 pub mod fitting;
 #[cfg(feature = "mcap")]
 pub mod foxglove;

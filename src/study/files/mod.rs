@@ -1,5 +1,6 @@
 //! Files of studies: recordings in folders, tables, reports, parts, pools, frozen plans, exports.
 
+pub mod annotation_files;
 pub mod bids_tree;
 pub mod export;
 pub mod pool_file;

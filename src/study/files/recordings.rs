@@ -10,7 +10,7 @@ use serde::Deserialize;
 use tomcom_session::files::file_error::{FileError, FileResult, open_regular};
 use tomcom_session::header::{FORMAT, PreviousPart};
 use tomcom_session::log::{
-    LOG_NAME, MAX_LINE, RecordingLock, SameLogs, first_line, header_digest, read_header, ruling,
+    LOG_NAME, LogEnding, LogReader, MAX_LINE, RecordingLock, SameLogs, first_line, header_digest, read_header, ruling,
 };
 use tomcom_session::plan::{PlanPosition, PlanRecording, RecordingOutcome};
 use tomcom_session::protocol::{PhaseProgress, ProtocolEvent, StudyPhase};
@@ -68,6 +68,21 @@ fn remove_copies(folder: &Path, found: &mut BTreeMap<String, Part>) -> FileResul
         copies.into_iter().for_each(|name| drop(found.remove(name)));
     }
     Ok(())
+}
+
+/// The log of a recording beside which an export is to be written. Errors: the log cannot be read, is still being written,
+/// or is not in the folder of a recording.
+pub fn open_closed(recording: &Path) -> FileResult<LogReader> {
+    let log = LogReader::open(recording)?;
+    let wrong =
+        |found: &str, remedy: &str| Err(FileError::from_finding(recording, found.to_string(), remedy.to_string()));
+    if log.ending() == LogEnding::Running {
+        return wrong("a recording that is still being written", "a recording whose session is over");
+    }
+    if !log.path().ends_with(LOG_NAME) {
+        return wrong("a log that is not called events.jsonl", "the folder of a recording, into which it is written");
+    }
+    Ok(log)
 }
 
 /// The recording itself, or all in the folder, sorted by name; of several parts, the last.

@@ -1,0 +1,39 @@
+//! Annotations as subtitles (WebVTT), which players show over the first film.
+
+use super::RecordingAnnotations;
+
+/// How a file begins that this program wrote.
+pub const UNTOUCHED: &str = "WEBVTT written by tomcom export";
+
+/// How long a moment stands in the picture, in seconds.
+const SHOWN_S: f64 = 1.5;
+
+/// The text of the file.
+pub fn text(annotations: &RecordingAnnotations) -> String {
+    let mut cues: Vec<(u64, u64, String)> = Vec::new();
+    for tier in &annotations.tiers {
+        for annotation in &tier.annotations {
+            let end_s = if tier.lasts { annotation.end_s } else { annotation.begin_s + SHOWN_S };
+            let ms = |seconds: f64| (seconds * 1e3).round() as u64;
+            let begin = ms(annotation.begin_s);
+            cues.push((begin, ms(end_s).max(begin + 1), format!("{}: {}", tier.name, annotation.words)));
+        }
+    }
+    cues.sort();
+    let cue = |(begin, end, words): &(u64, u64, String)| {
+        format!("{} --> {}\n{}\n\n", clock(*begin), clock(*end), plain(words))
+    };
+    format!("{UNTOUCHED}\n\n{}", cues.iter().map(cue).collect::<String>())
+}
+
+/// `00:01:02.345`.
+fn clock(ms: u64) -> String {
+    let (seconds, ms) = (ms / 1000, ms % 1000);
+    format!("{:02}:{:02}:{:02}.{ms:03}", seconds / 3600, seconds / 60 % 60, seconds % 60)
+}
+
+/// On one line, without what the format takes for its own signs.
+fn plain(words: &str) -> String {
+    let words: String = words.chars().map(|letter| if letter.is_control() { ' ' } else { letter }).collect();
+    words.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}

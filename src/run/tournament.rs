@@ -76,15 +76,16 @@ impl TournamentRequest {
     /// Simulates the trials of a concept that have no recording yet, and reads them all.
     fn contestant(&self, concept: &ConceptSpec, done: &(impl Fn() + Sync)) -> Result<Contestant, RecordingError> {
         let outside = Outside { minds: &LocalMinds, now_ns: monotonic_ns };
-        let mut recordings: Vec<(PathBuf, Option<AdviceTime>)> = Vec::new();
+        let (mut recordings, mut found): (Vec<(PathBuf, Option<AdviceTime>)>, u64) = (Vec::new(), 0);
         each_trial(&self.simulation(concept), outside, done, |trial| {
             recordings.push((trial.folder, trial.advice));
+            found += u64::from(trial.found);
             Ok(())
         })?;
         let read = |cost: &mut KeptCost, (folder, advice): &(PathBuf, Option<AdviceTime>)| read(folder, *advice, cost);
         let trials = parallel::each_with(&recordings, KeptCost::default, read, done);
         let trials = trials.into_iter().collect::<Result<Vec<_>, RecordingError>>()?;
-        Ok(Contestant { label: concept.label().to_string(), trials })
+        Ok(Contestant { label: concept.label().to_string(), trials, found })
     }
 }
 

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::arm_table::StudyArmStatistic;
 use crate::pass::contest::{BeliefScores, ContestTrial};
 use crate::statistics::interval_where_known;
+use tomcom_core::base::text::count;
 use tomcom_core::kitchen::Kitchen;
 
 /// Cost of a signal in presses in the paper's comparison of concepts: what the league counts.
@@ -31,6 +32,8 @@ pub struct Contestant {
     /// Name of the concept, or the external program's command line.
     pub label: String,
     pub trials: Vec<(ContestTrial, Option<KeptFigures>)>,
+    /// Number of trials that an earlier run simulated.
+    pub found: u64,
 }
 
 /// A concept's row of the table. Rates are per 100 presses of the participant. Differences are to the unassisted trials of
@@ -47,6 +50,8 @@ pub struct TournamentRow {
     pub failed: u64,
     /// Answers of an external concept that could not be used.
     pub faults: u64,
+    /// Trials that an earlier run simulated: a program can have been changed since.
+    pub found: u64,
     pub related_per_100: StudyArmStatistic,
     pub related_difference: StudyArmStatistic,
     pub signals_per_100: StudyArmStatistic,
@@ -147,6 +152,7 @@ impl Contestant {
             trials: pairs.len() as u64,
             failed: self.trials.len() as u64 - pairs.len() as u64,
             faults: self.trials.iter().map(|(trial, _)| trial.faults).sum(),
+            found: self.found,
             related_per_100: figure(&|pairs| rate(assisted(pairs), related)),
             related_difference: figure(&|pairs| {
                 Some(rate(assisted(pairs), related)? - rate(unassisted(pairs), related)?)
@@ -233,6 +239,11 @@ pub fn describe(found: &Tournament) -> String {
     );
     for row in found.concepts.iter().filter(|row| row.faults > 0) {
         text += &format!("{}: {} answers could not be used\n", row.concept, row.faults);
+    }
+    for row in found.concepts.iter().filter(|row| row.found > 0 && (row.name.is_some() || row.failed > 0)) {
+        let trials = count(row.found, "trial is", "trials are");
+        text +=
+            &format!("{}: {trials} of an earlier run; if the program was changed since, delete them\n", row.concept);
     }
     found.failures.iter().for_each(|failure| text += &format!("failed: {failure}\n"));
     text

@@ -453,8 +453,9 @@ fn a_tournament_compares_in_pairs_and_goes_on_where_it_was_cut() {
     let broken = row(&whole, "exit 7").expect("the program that ends");
     assert_eq!((broken.trials, broken.failed), (0, 6));
     assert!(whole.failures.iter().any(|failure| failure.contains("exit code 7")), "{:?}", whole.failures);
-    // A second time nothing is simulated, and the table is the same.
+    // A second time nothing is simulated, and the table is the same; what was simulated before is told.
     assert_eq!(run(SimulationShard::WHOLE), whole);
+    assert!(whole.concepts.iter().all(|row| row.found == 6) && halves[0].concepts.iter().all(|row| row.found == 0));
     // The unassisted trials are the reference, not a contestant that nobody asked for.
     assert!(row(&whole, "none").is_none() && out.join("none").is_dir());
 }
@@ -663,5 +664,6 @@ fn a_wizard_is_offered_what_a_program_names_with_its_reason() {
     assert!(!offers.is_empty());
     for offer in offers {
         assert_eq!((offer.worth, offer.words.as_deref()), (None, Some("it comes first")), "{:?}", offer.what);
+        assert_eq!(offer.reason, None, "the program's words are the reason");
     }
 }

@@ -393,6 +393,9 @@ fn cost_line(
         }
         BenefitUnit::None => String::new(),
     };
+    // An external concept has a name of its own.
+    let name = session.external.name.as_ref().map_or(String::new(), |name| format!("{}: ", printable(name)));
+    let left = format!("{name}{left}");
     let quiet = brush.style(TextRole::Quiet);
     let end = brush.text(inside.x, y, inside.width, &left, quiet);
     // A recommendation that the assistant has already sent by itself is marked as sent.

@@ -177,10 +177,11 @@ impl AdviceScene {
 /// What the assistant recommends, in words; empty if it recommends nothing.
 pub fn advised(kitchen: &Kitchen, advice: &Recommendation) -> String {
     let signal = advice.best.as_ref().map(|best| {
-        let net = advice.top().map_or(0.0, |top| top.net);
-        let reason = advice.reason.as_ref().map(|reason| wording::reason(kitchen, reason));
-        let why = reason.map_or_else(String::new, |reason| format!("; {}", reason.words()));
-        format!("advises: {} (net {net:+.2}){why}", wording::signal(best))
+        // An external concept can name a signal without its value, and has reasons in its own words.
+        let net = advice.top().map_or_else(String::new, |top| format!(" (net {:+.2})", top.net));
+        let reason = advice.reason.as_ref().map(|reason| wording::reason(kitchen, reason).words());
+        let why = reason.or_else(|| advice.words.clone()).map_or_else(String::new, |reason| format!("; {reason}"));
+        format!("advises: {}{net}{why}", wording::signal(best))
     });
     let proposal =
         advice.proposal.as_ref().map(|proposal| format!("proposes: {}", wording::proposal(&proposal.presses)));

@@ -189,8 +189,9 @@ impl SessionEngine {
     pub(crate) fn review_offer(&mut self, now: SessionTime) {
         while let Some(mut event) = offers::due(self.session(), now) {
             // A recommendation states a reason for its first option only; if two orders want the same dish, the offer
-            // may be about the other order.
+            // may be about the other order. An external concept has reasons of its own.
             if let Event::OfferOpened(advice) = &mut event
+                && advice.words.is_none()
                 && let (None, OfferedCommunication::Signal(signal)) = (&advice.reason, &advice.what)
             {
                 let session = &self.follower.session;

@@ -1,6 +1,7 @@
 //! Sessions, trainings and replays at the console.
 
 mod by_hand;
+mod external;
 mod leaving;
 mod watching;
 mod wizard;

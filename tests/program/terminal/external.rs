@@ -1,0 +1,47 @@
+//! An external concept beside a live session: a program that answers, and programs that do all they can to disturb.
+
+use std::fs;
+
+use crate::pseudo_terminal::Terminal;
+
+/// A program in `sh` that sends the first signal of every question, and tells its process number.
+const ANSWERS: &str = r#"echo $$ > pid; while read -r line; do rest=${line#*\"id\":}; id=${rest%%,*}; case $line in *'"ask":"begin"'*) echo '{"id":0,"protocol":1,"name":"mine"}';; *'"ask":"end"'*) exit 0;; *) rest=${line#*\"signals\":\[}; echo "{\"id\":$id,\"send\":${rest%%\}*}},\"reason\":\"it comes first\"}";; esac; done"#;
+
+#[test]
+fn a_wizard_is_offered_what_a_program_recommends_and_it_ends_with_the_session() {
+    let terminal = Terminal::open("external-offers");
+    let pid = terminal.recordings() + "/pid";
+    fs::create_dir_all(terminal.recordings()).expect("a folder");
+    let program = ANSWERS.replace("> pid", &format!("> '{pid}'"));
+    terminal.operate("default.toml", &["--condition", "wizard", "--concept", &program]);
+    terminal.see("external concept began: mine");
+    terminal.begin();
+    terminal.see("it comes first");
+    terminal.see("SHOW RECIPE OF ORDER 1");
+    terminal.key_logs("Enter", "signal_shown");
+    terminal.quit();
+    terminal.verifies();
+    let pid = fs::read_to_string(pid).expect("the program ran");
+    let stat = fs::read_to_string(format!("/proc/{}/stat", pid.trim())).unwrap_or_default();
+    assert!(stat.is_empty() || stat.contains(") Z "), "{stat}");
+}
+
+#[test]
+fn programs_that_crash_flood_and_hang_leave_the_session_running() {
+    for (name, program, told) in [
+        ("crash", "echo oh dear >&2; exit 3", "exit code 3: oh dear"),
+        ("flood", "yes '{}'", "\"fault\":\"given_up\""),
+        ("line", "head -c 100000000 /dev/zero; sleep 1000", "a line of more than 1 MB"),
+        ("hang", "sleep 1000", "\"fault\":\"silent\""),
+    ] {
+        let terminal = Terminal::open(&format!("external-{name}"));
+        terminal.operate("default.toml", &["--condition", "assistant", "--concept", program]);
+        terminal.begin();
+        terminal.wait(told, || terminal.count(told) > 0);
+        let presses = || terminal.count("\"kind\":\"press\"");
+        let before = presses();
+        terminal.wait("the session goes on", || presses() > before + 3);
+        terminal.quit();
+        terminal.verifies();
+    }
+}

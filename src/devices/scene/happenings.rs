@@ -9,7 +9,7 @@ use tomcom_core::communication::{Sender, Signal, signals};
 use tomcom_core::kitchen::{Agent, AspectId, Kitchen};
 use tomcom_core::measures::JudgedPress;
 use tomcom_session::event::SignalEndReason;
-use tomcom_session::history::wording;
+use tomcom_session::history::{error_reasons, wording};
 use tomcom_session::protocol::ProtocolEvent;
 use tomcom_session::{Session, TimelineEntry, TimelineEvent, TimestampedEvent};
 
@@ -80,7 +80,7 @@ pub fn entry(session: &Session, entry: &TimelineEntry, error: Option<ShownError<
             let entity = format!("{}/presses", agent.name());
             match error.filter(|_| agent == Agent::Human) {
                 Some(error) => {
-                    let text = format!("ERROR {}, {text} ({})", error.number, error.why(&session.kitchen));
+                    let text = format!("ERROR {}, {text}: {}", error.number, error.why(&session.kitchen));
                     say(&entity, SceneLogLevel::Error, text, entity_content::ERROR)
                 }
                 None if no_effect.is_none() => {
@@ -105,19 +105,28 @@ pub fn entry(session: &Session, entry: &TimelineEntry, error: Option<ShownError<
     }
 }
 
-/// The words of an update that shows an error, a signal, or the beginning of a false belief; `None` for other updates.
-pub fn landmark(row: &EntityUpdate) -> Option<String> {
-    match (row.entity.as_str(), &row.shown) {
-        ("human/presses", EntityData::Words { level: SceneLogLevel::Error, text, .. })
-        | ("wizard/signals" | "assistant/signals", EntityData::Words { level: SceneLogLevel::Info, text, .. }) => {
-            Some(text.clone())
+/// What a reviewer looks for in a recording.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SceneLandmark {
+    Error,
+    Signal,
+    /// By the estimate.
+    FalseBelief,
+}
+
+/// The landmark that begins or ends with this update of its lane, with its words; at its end the words are empty. `None`
+/// for other updates.
+pub fn landmark(row: &EntityUpdate) -> Option<(SceneLandmark, String)> {
+    let EntityData::State(text, _) = &row.shown else { return None };
+    let (kind, words) = match row.entity.as_str() {
+        beliefs::ERRORS => (SceneLandmark::Error, format!("error {text}")),
+        beliefs::SIGNALS => (SceneLandmark::Signal, format!("signal: {text}")),
+        lane => {
+            let aspect = wording::location(lane.strip_prefix(beliefs::WRONG_BELIEFS)?);
+            (SceneLandmark::FalseBelief, format!("false belief: {aspect} taken for {text}"))
         }
-        (entity, EntityData::State(taken_for)) if !taken_for.is_empty() => {
-            let aspect = entity.strip_prefix(beliefs::TAKEN_FOR)?;
-            Some(format!("false belief: {} taken for {taken_for}", wording::location(aspect)))
-        }
-        _ => None,
-    }
+    };
+    Some((kind, if text.is_empty() { String::new() } else { words }))
 }
 
 pub fn protocol(event: &ProtocolEvent) -> EntityUpdate {
@@ -133,10 +142,9 @@ pub struct ShownError<'a> {
 }
 
 impl ShownError<'_> {
-    /// Why the press was an error.
+    /// Why the press was an error, with its cost and its cause.
     pub fn why(&self, kitchen: &Kitchen) -> String {
-        let words = wording::error(kitchen, self.press);
-        words.strip_prefix("error, ").unwrap_or(&words).to_string()
+        error_reasons::with_cause(kitchen, self.press)
     }
 }
 

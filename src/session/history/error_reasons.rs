@@ -18,6 +18,8 @@ pub struct ExplainedError {
     pub press: String,
     /// "order 1 needs tuna", "the hand is empty".
     pub why: String,
+    /// The reason with cost and cause, which raters are not shown.
+    pub with_cause: String,
 }
 
 impl ExplainedError {
@@ -30,8 +32,18 @@ impl ExplainedError {
             time: press.time,
             press: wording::button(kitchen, Agent::Human, press.button),
             why: why(kitchen, press),
+            with_cause: with_cause(kitchen, press),
         })
     }
+}
+
+/// Why this press was an error, what it costs, and its cause where that is known: "order 1 has nori already; costs 2
+/// presses; cause: false belief about robot hand". Not for raters, who find the causes.
+pub fn with_cause(kitchen: &Kitchen, press: &JudgedPress) -> String {
+    let (why, cost) = (why(kitchen, press), wording::error(kitchen, press));
+    let cost = cost.strip_prefix("error, ").unwrap_or(&cost);
+    // Where there is no other reason, the cost is the reason.
+    if cost.starts_with(&why) { cost.to_string() } else { format!("{why}; {cost}") }
 }
 
 /// Why this press was an error: why it had no effect; else what the orders need instead; else the better press.

@@ -4,13 +4,14 @@ use std::path::{Path, PathBuf};
 
 use super::failure::Failure;
 use super::output::put;
+use super::review::AskedLandmarks;
 use crate::run::open_viewer::{
-    OngoingRecording, RerunReviewOutcome, RerunReviewRequest, RerunStreamFile, RerunViewerError, landmarks, review,
-    running, save, unshown_films, until_asked_to_end,
+    OngoingRecording, RecordedLandmark, RerunReviewOutcome, RerunReviewRequest, RerunStreamFile, RerunViewerError,
+    landmarks, review, running, save, unshown_films, until_asked_to_end,
 };
 use tomcom_core::base::text::PathText;
 use tomcom_core::base::time::SessionTime;
-use tomcom_devices::scene::moment_on_clock;
+use tomcom_devices::scene::{SceneLandmark, moment_on_clock};
 
 impl From<RerunViewerError> for Failure {
     fn from(error: RerunViewerError) -> Failure {
@@ -29,20 +30,37 @@ pub(super) fn save_all(recordings: &[PathText]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Prints the errors, signals and false beliefs of these recordings, each as the command that opens the viewer there, with
-/// what happened as its comment.
-pub(super) fn list_landmarks(recordings: &[PathBuf]) -> Result<(), Failure> {
+/// Prints the landmarks that are asked for in these recordings, each as the command that opens the viewer there, with its end
+/// and what happened as its comment.
+pub(super) fn list_landmarks(recordings: &[PathBuf], asked: AskedLandmarks) -> Result<(), Failure> {
+    let kinds = [
+        (asked.errors, SceneLandmark::Error),
+        (asked.signals, SceneLandmark::Signal),
+        (asked.beliefs, SceneLandmark::FalseBelief),
+    ];
+    let kinds: Vec<SceneLandmark> = kinds.into_iter().filter_map(|(is_asked, kind)| is_asked.then_some(kind)).collect();
     for recording in recordings {
         let mut text = String::new();
-        for (at, words) in landmarks(recording)? {
-            text += &format!("tomcom review {} --at {}  # {words}\n", shell_word(recording), moment_on_clock(at));
+        for RecordedLandmark { from, until, words } in landmarks(recording, &kinds)? {
+            let until = until.map_or_else(|| "the end".to_string(), moment_on_clock);
+            let command = format!("tomcom review {} --at {}", shell_word(recording), moment_on_clock(from));
+            text += &format!("{command}  # to {until}, {words}\n");
         }
         if text.is_empty() {
-            text = format!("{}: no error, signal or false belief\n", recording.display());
+            let names: Vec<&str> = kinds.iter().map(|&kind| named(kind)).collect();
+            text = format!("{}: no {}\n", recording.display(), names.join(", no "));
         }
         put(&text)?;
     }
     Ok(())
+}
+
+fn named(kind: SceneLandmark) -> &'static str {
+    match kind {
+        SceneLandmark::Error => "error",
+        SceneLandmark::Signal => "signal",
+        SceneLandmark::FalseBelief => "false belief",
+    }
 }
 
 /// Opens recordings in the Rerun viewer at a time on the trial's clock, or writes their stream to a file. `web`: use a
@@ -60,6 +78,9 @@ pub(super) fn open(
     for unshown in if is_beside_log { Vec::new() } else { unshown_films(&recordings)? } {
         put(&format!("not shown: {unshown}\n"))?;
     }
+    if save.is_none() {
+        put("preparing the recording for the viewer …\n")?;
+    }
     let asked = RerunReviewRequest { recordings, save, web, at };
     match review(&asked)? {
         RerunReviewOutcome::Saved(file) => {
@@ -69,9 +90,13 @@ pub(super) fn open(
         RerunReviewOutcome::Opened(file) => {
             put(&format!("the viewer opens {}{}\n", file.path.display(), because(&file)))?;
         }
-        RerunReviewOutcome::Served { url, because, _serving } => {
+        RerunReviewOutcome::Served { file, because: why, viewer } => {
+            let path = file.path.display();
             put(&format!(
-                "{because}: the Rerun viewer is served here, for a browser on this machine, until ctrl+c\n{url}\n"
+                "the viewer shows {path}{}\n{why}: the Rerun viewer is served here, for a browser on this machine, \
+                 until ctrl+c\n{}\n",
+                because(&file),
+                viewer.url
             ))?;
             until_asked_to_end()?;
         }

@@ -33,9 +33,22 @@ pub(super) struct ReviewArgs {
     /// Open at this time on the trial's clock, as the console shows it: 1:34, or seconds.
     #[arg(long, value_name = "TIME", value_parser = moment, conflicts_with = "save")]
     at: Option<SessionTime>,
-    /// Only print a line for each error, signal and false belief (by the estimate): the command that opens the viewer there.
+    #[command(flatten)]
+    asked: AskedLandmarks,
+}
+
+/// What is printed instead of opening the viewer.
+#[derive(Clone, Copy, Debug, Args)]
+pub(super) struct AskedLandmarks {
+    /// Only print a line for each error: the command that opens the viewer there, with its end and its reason.
     #[arg(long, conflicts_with_all = ["save", "web", "at"])]
-    errors: bool,
+    pub(super) errors: bool,
+    /// The same for each signal; also together with --errors.
+    #[arg(long, conflicts_with_all = ["save", "web", "at"])]
+    pub(super) signals: bool,
+    /// The same for each false belief, by the estimate, with the truth; also together with the others.
+    #[arg(long, conflicts_with_all = ["save", "web", "at"])]
+    pub(super) beliefs: bool,
 }
 
 /// Parses a time on the trial's clock, written as the console shows it, or in seconds.
@@ -73,5 +86,9 @@ pub(super) fn review(args: &ReviewArgs) -> Result<(), Failure> {
         )));
     }
     let recordings = each_chosen(&recordings)?;
-    if args.errors { list_landmarks(&recordings) } else { open(recordings, save, args.web, args.at) }
+    let AskedLandmarks { errors, signals, beliefs } = args.asked;
+    match errors || signals || beliefs {
+        true => list_landmarks(&recordings, args.asked),
+        false => open(recordings, save, args.web, args.at),
+    }
 }

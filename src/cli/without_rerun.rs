@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::failure::Failure;
+use super::review::AskedLandmarks;
 use tomcom_core::base::text::PathText;
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::features::{Feature, MissingFeature};
@@ -13,7 +14,7 @@ pub(super) fn save_all(_: &[PathText]) -> Result<(), Failure> {
 }
 
 /// Refuses to list what a Rerun viewer shows, since this build lacks Rerun.
-pub(super) fn list_landmarks(_: &[PathBuf]) -> Result<(), Failure> {
+pub(super) fn list_landmarks(_: &[PathBuf], _: AskedLandmarks) -> Result<(), Failure> {
     Err(MissingFeature(Feature::Rerun).into())
 }
 

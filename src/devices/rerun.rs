@@ -20,9 +20,10 @@ use re_sdk::sink::FileSink;
 use re_sdk::{AsComponents, RecordingStream, RecordingStreamBuilder, SerializedComponentBatch};
 use re_sdk_types::archetypes;
 use re_sdk_types::components::{
-    Color, FillMode, InterpolationMode, MarkerShape, MediaType, TextLogLevel, VideoTimestamp,
+    Color, FillMode, InterpolationMode, MarkerShape, MediaType, Text, TextLogLevel, VideoTimestamp,
 };
 use re_sdk_types::datatypes::Quaternion;
+use re_sdk_types::{AnyValues, ComponentIdentifier};
 
 use self::blueprint::{APPLICATION, SESSION_TIME, ViewerLayout, ViewerStart, film_entity};
 pub use self::blueprint::{ShownRecording, TRIAL_TIME};
@@ -40,6 +41,10 @@ use tomcom_core::base::time::SessionTime;
 pub const VERSION: &str = "0.36.3";
 /// The timeline of events, beside those of the clocks.
 const STEP: &str = "step";
+/// The timeline whose only row is the last one of the stream: a viewer that has it has the whole stream.
+const END: &str = "end";
+/// A tenth of a second in nanoseconds.
+const TENTH: u64 = 100_000_000;
 /// A millisecond in nanoseconds.
 const MS: u64 = 1_000_000;
 /// Largest delay with which connected viewers get data.
@@ -52,22 +57,25 @@ const WAITING_BYTES: u64 = 1 << 20;
 const WAITING_IN_ALL: u64 = 16 << 20;
 /// Size of the past data that is kept for viewers that connect later, in bytes.
 const KEPT_BYTES: usize = 64 << 20;
-/// Limit of the data kept for viewers while a recording is viewed: all data are kept.
-const ALL_BYTES: usize = usize::MAX;
 /// Least time between two gaze samples that viewers of a running session get; more frequent samples could not be seen.
 const GAZE_EVERY: SessionTime = SessionTime(33_000_000);
 
 /// Radius of a gaze point, and half the line width of the circle around the newest one.
 const SIGHT: f32 = 4.0;
 const LINE: f32 = 2.0;
+/// Radius of the gaze points of the last moment.
+const RECENT: f32 = 8.0;
+/// Opacity of pictures: the viewer draws the transparent parts of pictures black that are wholly opaque.
+const OPACITY: f32 = 0.999;
 /// Drawing order of pictures of the lowest layer: below outlines and labels.
 const LOWEST: f32 = -20.0;
 
-/// Identity of a Rerun stream: id and name.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// Identity of a Rerun stream: id and name, and what a viewer shows as the recording's properties, each with its name.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct StreamIdentity {
     pub id: String,
     pub name: String,
+    pub facts: Vec<(String, String)>,
 }
 
 /// A moment of a film: the time in the film, on the trial's clock, and of the session.
@@ -82,8 +90,8 @@ pub struct FilmFrame {
 #[derive(Clone, Debug, Default)]
 pub struct StreamOutlets {
     pub file: Option<PathBuf>,
-    /// Address of the server for viewers; `true` if viewers get the whole stream, whatever its size.
-    pub server: Option<(SocketAddr, bool)>,
+    /// Address of the server for viewers.
+    pub server: Option<SocketAddr>,
 }
 
 /// Writer of a Rerun stream. The writer serves each output independently, so that no output delays another.
@@ -134,13 +142,11 @@ impl RerunWriter {
             ViewerLayout::from_lanes(lanes, ViewerStart::Waiting).send(&stream)?;
             streams.push(OpenStream::new(stream, Some(PIECE_OF_FILE), SessionTime::ZERO));
         }
-        if let Some((address, all)) = outlets.server {
+        if let Some(address) = outlets.server {
             let stream = stream(identity, PIECE)?;
-            let kept = if all { ALL_BYTES } else { KEPT_BYTES };
-            stream.set_sink(Box::new(ViewerServer::open(address, kept)?));
-            let opens = if all { ViewerStart::Waiting } else { ViewerStart::Following };
-            ViewerLayout::from_lanes(lanes, opens).send(&stream)?;
-            streams.push(OpenStream::new(stream, None, if all { SessionTime::ZERO } else { GAZE_EVERY }));
+            stream.set_sink(Box::new(ViewerServer::open(address, KEPT_BYTES)?));
+            ViewerLayout::from_lanes(lanes, ViewerStart::Following).send(&stream)?;
+            streams.push(OpenStream::new(stream, None, GAZE_EVERY));
         }
         Ok(RerunWriter { streams })
     }
@@ -153,7 +159,11 @@ impl RerunWriter {
             if let EntityData::SightRadius(radius) = row.shown {
                 let circle = archetypes::Ellipses2D::update_fields().with_half_sizes([[radius as f32; 2]]);
                 let circle = circle.with_line_radii([LINE]).as_serialized_batches();
-                self.streams.iter().for_each(|one| one.log(&around(&entity), true, &circle));
+                let dot = archetypes::Points2D::update_fields().with_radii([RECENT]).as_serialized_batches();
+                for one in &self.streams {
+                    one.log(&around(&entity), true, &circle);
+                    one.log(&recent(&entity), true, &dot);
+                }
             }
         }
     }
@@ -177,10 +187,22 @@ impl RerunWriter {
                 continue;
             }
             let (components, circle) = (components(row), sight.map(|sight| [circle(sight)]));
+            let is_line = matches!(row.shown, EntityData::Words { .. });
             for one in self.streams.iter_mut().filter(|one| is_at_once(one)) {
-                if sight.is_none() || one.shows_gaze(moment.time) {
-                    one.log(&entity, false, &components);
-                    circle.iter().for_each(|circle| one.log(&around(&entity), false, &batches(circle)));
+                if sight.is_some() && !one.shows_gaze(moment.time) {
+                    continue;
+                }
+                // A line of a list has the time that the texts and the viewer's cursor have there, not a cut one.
+                if is_line {
+                    one.set_trial_time(moment.trial.0.next_multiple_of(TENTH));
+                }
+                one.log(&entity, false, &components);
+                if is_line {
+                    one.set_trial_time(moment.trial.0 / MS * MS);
+                }
+                if let Some(circle) = &circle {
+                    one.log(&around(&entity), false, &batches(circle));
+                    one.log(&recent(&entity), false, &components);
                 }
             }
         }
@@ -227,6 +249,11 @@ impl RerunWriter {
     pub fn finish(&mut self) {
         self.streams.iter_mut().for_each(|one| {
             one.write_sights();
+            // What waits is written before the row that says that all is there.
+            let _ = one.stream.flush_blocking();
+            one.stream.reset_time();
+            one.stream.set_time_sequence(END, 0);
+            one.log(END, false, &archetypes::Scalars::single(0.0).as_serialized_batches());
             one.stream.finalize_deferred_sinks();
         });
     }
@@ -246,13 +273,16 @@ impl OpenStream {
             // Errors of the stream's file are reported when the file is completed.
             let _ = self.stream.flush_async();
         }
-        let whole = |number: u64| i64::try_from(number).unwrap_or(i64::MAX);
         // The timeline shows whole milliseconds, which are easier to read; no two updates are closer together.
         self.now = [whole(moment.trial.0 / MS * MS), whole(moment.time.0), whole(moment.step)];
-        let [trial, session, step] = self.now;
-        self.stream.set_time(TRIAL_TIME, re_sdk::TimeCell::from_duration_nanos(trial));
+        let [_, session, step] = self.now;
+        self.set_trial_time(moment.trial.0 / MS * MS);
         self.stream.set_time(SESSION_TIME, re_sdk::TimeCell::from_duration_nanos(session));
         self.stream.set_time_sequence(STEP, step);
+    }
+
+    fn set_trial_time(&self, time_ns: u64) {
+        self.stream.set_time(TRIAL_TIME, re_sdk::TimeCell::from_duration_nanos(whole(time_ns)));
     }
 
     /// Keeps a gaze sample until the end of its piece.
@@ -294,10 +324,15 @@ impl OpenStream {
         let circles = archetypes::Ellipses2D::update_fields().with_centers(some.iter().map(|&nth| at[nth]));
         let (points, circles) =
             (points.with_colors(colours.iter().copied()), circles.with_colors(some.iter().map(|&nth| colours[nth])));
+        let dots = archetypes::Points2D::update_fields().with_positions(some.iter().map(|&nth| at[nth]));
+        let dots = dots.with_colors(some.iter().map(|&nth| colours[nth]));
         // Writing fails only if components cannot be serialised, and these components can.
-        if let (Ok(points), Ok(circles)) = (points.columns_of_unit_batches(), circles.columns_of_unit_batches()) {
+        if let Ok(points) = points.columns_of_unit_batches() {
             let _ = self.stream.send_columns(entity.as_str(), indexes(&all), points);
+        }
+        if let (Ok(circles), Ok(dots)) = (circles.columns_of_unit_batches(), dots.columns_of_unit_batches()) {
             let _ = self.stream.send_columns(around(&entity), indexes(&some), circles);
+            let _ = self.stream.send_columns(recent(&entity), indexes(&some), dots);
         }
     }
 
@@ -356,6 +391,12 @@ fn stream(identity: &StreamIdentity, piece: Duration) -> io::Result<RecordingStr
     // The stream contains only times of the session, not times of Rerun's SDK.
     stream.set_log_time_enabled(false);
     stream.set_log_tick_enabled(false);
+    let mut facts = AnyValues::default();
+    for (name, value) in &identity.facts {
+        let name = ComponentIdentifier::try_new(name).map_err(io::Error::other)?;
+        facts = facts.with_component::<Text>(name, [value.clone()]);
+    }
+    stream.send_property("session", &facts).map_err(io::Error::other)?;
     Ok(stream)
 }
 
@@ -404,8 +445,15 @@ fn parts(shown: &EntityData) -> Vec<Part> {
             vec![Box::new(archetypes::TextLog::new(&*printable(text)).with_level(level).with_color(colour_of(*colour)))]
         }
         EntityData::Page(text) => vec![Box::new(archetypes::TextDocument::from_markdown(&*printable_lines(text)))],
-        EntityData::State(text) => vec![Box::new(archetypes::StateChange::single(&*printable(text)))],
+        EntityData::State(text, colour) => state(&printable(text), colour_of(*colour)),
     }
+}
+
+/// A state of a lane with the colour of its bar; without a text, the end of the one before.
+fn state(text: &str, colour: Color) -> Vec<Part> {
+    let change: Part = Box::new(archetypes::StateChange::single(text));
+    let style: Part = Box::new(archetypes::StateConfiguration::new().with_values([text]).with_colors([colour]));
+    if text.is_empty() { vec![change] } else { vec![change, style] }
 }
 
 fn colour_of([red, green, blue, opacity]: [u8; 4]) -> Color {
@@ -436,7 +484,16 @@ fn picture_in_2d(picture: &ScenePicture) -> Vec<Part> {
     let scale = [picture.width / pixels[0], picture.height / pixels[1], 1.0].map(|factor| factor as f32);
     let place = archetypes::Transform3D::from_translation_scale([picture.left as f32, picture.top as f32, 0.0], scale);
     let image = archetypes::EncodedImage::from_file_contents(picture.png.to_vec());
-    vec![Box::new(place), Box::new(image.with_draw_order(LOWEST + f32::from(picture.layer)))]
+    vec![Box::new(place), Box::new(image.with_draw_order(LOWEST + f32::from(picture.layer)).with_opacity(OPACITY))]
+}
+
+fn whole(number: u64) -> i64 {
+    i64::try_from(number).unwrap_or(i64::MAX)
+}
+
+/// Entity of the large gaze points of the last moment.
+fn recent(gaze: &str) -> String {
+    format!("{gaze}/recent")
 }
 
 /// Entity of the circle around the newest gaze point. The viewer shows the points of the last seconds, but one circle.

@@ -62,9 +62,8 @@ impl RerunStream {
         opening: SceneUpdate,
     ) -> io::Result<RerunStream> {
         let server = server.map(free_port).transpose()?;
-        let outlets =
-            StreamOutlets { file: file.map(Path::to_path_buf), server: server.map(|address| (address, false)) };
-        let lane = ShownRecording::default();
+        let outlets = StreamOutlets { file: file.map(Path::to_path_buf), server };
+        let lane = ShownRecording { title: identity.name.clone(), ..ShownRecording::default() };
         let mut writer = RerunWriter::open(identity, &outlets, std::slice::from_ref(&lane))?;
         let (news, told) = sync_channel::<Vec<SceneUpdate>>(WAITING);
         let (close, closed) = channel();
@@ -171,7 +170,7 @@ mod tests {
         let path = folder.path().join(RRD_NAME);
         let other = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
         let taken = other.local_addr().unwrap();
-        let identity = StreamIdentity { id: rrd::mark(), name: "test".to_string() };
+        let identity = StreamIdentity { id: rrd::mark(), name: "test".to_string(), facts: Vec::new() };
         let moment = |step: u64| {
             let rows = vec![EntityUpdate::new("a", EntityData::Value(step as f64))];
             let time = SessionTime(step * 1_000_000);
@@ -193,7 +192,7 @@ mod tests {
         let home = tempfile::tempdir().unwrap();
         let folder = home.path();
         let path = folder.join(RRD_NAME);
-        let identity = StreamIdentity { id: rrd::mark(), name: "test".to_string() };
+        let identity = StreamIdentity { id: rrd::mark(), name: "test".to_string(), facts: Vec::new() };
         let moment = |step: u64| SceneUpdate {
             time: SessionTime(step * 1_000_000),
             trial: SessionTime(step * 1_000_000),

@@ -1,6 +1,7 @@
 //! Command `tomcom review`: opens recordings in the Rerun viewer, from the stream file beside the log or rebuilt from
 //! the log.
 
+use std::collections::HashMap;
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
@@ -11,11 +12,10 @@ use tempfile::TempPath;
 use crate::run::terminal::asked_to_end;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::mind::dirichlet::DirichletBelief;
-use tomcom_devices::rerun::{FilmFrame, RerunWriter, ShownRecording, StreamIdentity, StreamOutlets, WebViewer, uri};
+use tomcom_devices::rerun::{FilmFrame, RerunWriter, ShownRecording, StreamIdentity, StreamOutlets, WebViewer};
 use tomcom_devices::rrd::{self, RRD_NAME, RerunFileState};
-use tomcom_devices::scene::entity_content::slug;
-use tomcom_devices::scene::{SceneInputs, SceneUpdate, SessionScene, landmark};
-use tomcom_devices::stream::{PORTS, is_free};
+use tomcom_devices::scene::{SceneInputs, SceneLandmark, SceneUpdate, SessionScene, facts, landmark, title};
+use tomcom_devices::stream::PORTS;
 use tomcom_devices::stream_head;
 use tomcom_devices::viewer::{self, ViewerAvailability};
 use tomcom_session::files::file_error::{FileError, FileResult, read_bytes};
@@ -26,8 +26,7 @@ use tomcom_session::log::{LOG_NAME, LogReader, RecordingLock, RecordingWriteErro
 use tomcom_session::replay::RecordingReplay;
 use tomcom_session::{Session, TimestampedEvent};
 
-/// First network ports that are tried for the stream's server and for the web viewer.
-const SERVER_PORT: u16 = 9878;
+/// First network port that is tried for the web viewer.
 const WEB_PORT: u16 = 9090;
 /// Largest film that a stream has, in bytes.
 const MOST_FILM: u64 = 1 << 30;
@@ -56,8 +55,8 @@ pub enum RerunViewerError {
     /// The web viewer cannot be served on this computer.
     #[error("the viewer cannot be served on this machine: {0}")]
     #[diagnostic(help(
-        "{PORTS} ports from {WEB_PORT} on and from {SERVER_PORT} on were tried, and none is free: end another tomcom \
-         review, or see which program uses these ports"
+        "{PORTS} ports from {WEB_PORT} on were tried, and none is free: end another tomcom review, or see which program \
+         uses these ports"
     ))]
     Web(io::Error),
     /// Another program is writing the stream file of this recording.
@@ -124,11 +123,10 @@ pub enum RerunReviewOutcome {
     Opened(RerunStreamFile),
     /// The web viewer is served to a browser until this value is dropped.
     Served {
-        /// Address of the web viewer, to be opened in a browser.
-        url: String,
+        file: RerunStreamFile,
         /// Why the web viewer is served instead of opening a native viewer.
         because: &'static str,
-        _serving: Box<(RerunWriter, WebViewer)>,
+        viewer: WebViewer,
     },
 }
 
@@ -156,7 +154,10 @@ pub fn review(asked: &RerunReviewRequest) -> Result<RerunReviewOutcome, RerunVie
                 _ if asked.web => "as --web asks for",
                 _ => "there is no Rerun viewer in PATH",
             };
-            serve(&asked.recordings, asked.at, because)
+            let file = saved(&asked.recordings, StreamPlace::Anywhere)?;
+            let viewer = serve(&file.path, asked.at).map_err(RerunViewerError::Web)?;
+            viewer::browse(&viewer.url);
+            Ok(RerunReviewOutcome::Served { file, because, viewer })
         }
     }
 }
@@ -195,32 +196,12 @@ enum StreamPlace<'a> {
     Anywhere,
 }
 
-/// Streams recordings to a server, and serves the web viewer for browsers.
-fn serve(
-    recordings: &[PathBuf],
-    at: Option<SessionTime>,
-    because: &'static str,
-) -> Result<RerunReviewOutcome, RerunViewerError> {
-    let playing = playing(recordings, true)?;
-    let (server, web, viewer) = ports(at).map_err(RerunViewerError::Web)?;
-    let outlets = StreamOutlets { file: None, server: Some((server, true)) };
-    let writer = write(playing, recordings, &outlets)?.map_err(RerunViewerError::Web)?;
-    let url = format!(
-        "http://{web}/?hide_welcome_screen&url={}",
-        uri(server).replace('+', "%2B").replace(':', "%3A").replace('/', "%2F")
-    );
-    viewer::browse(&url);
-    Ok(RerunReviewOutcome::Served { url, because, _serving: Box::new((writer, viewer)) })
-}
-
-/// The first free pair of network ports for stream and web viewer; the web viewer is served at once, and opens at this
-/// time.
-fn ports(at: Option<SessionTime>) -> io::Result<(SocketAddr, SocketAddr, WebViewer)> {
+/// Serves the web viewer with this stream file at the first free network port; it opens at this time.
+fn serve(file: &Path, at: Option<SessionTime>) -> io::Result<WebViewer> {
     let mut failed = io::Error::from(io::ErrorKind::AddrInUse);
     for nth in 0..=PORTS {
-        let [server, web] = [SERVER_PORT, WEB_PORT].map(|port| SocketAddr::from((Ipv4Addr::LOCALHOST, port + nth)));
-        match WebViewer::serve(web, at).and_then(|viewer| is_free(server).map(|()| viewer)) {
-            Ok(viewer) => return Ok((server, web, viewer)),
+        match WebViewer::serve(SocketAddr::from((Ipv4Addr::LOCALHOST, WEB_PORT + nth)), file, at) {
+            Ok(viewer) => return Ok(viewer),
             Err(reason) => failed = reason,
         }
     }
@@ -314,23 +295,26 @@ fn name(recording: &Path) -> String {
     folder.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// Prepares recordings for one stream: a single recording at the root of the scene, several below their names with
-/// participant and arm.
+/// Prepares recordings for one stream: a single recording at the root of the scene, several below their names.
 fn playing(recordings: &[PathBuf], with_films: bool) -> FileResult<Vec<Playing>> {
+    let names: Vec<String> = recordings.iter().map(|recording| name(recording)).collect();
     let one = |(nth, recording): (usize, &PathBuf)| {
         let mut playing = Playing::open(recording)?;
         if with_films {
             playing.films = films(recording)?.into_iter().filter(|(path, _)| unplayable(path).is_none()).collect();
-            playing.lane.films = playing.films.len();
         }
-        if recordings.len() == 1 {
-            return Ok(playing);
-        }
-        let name = name(recording);
-        let session = playing.replay.session();
-        let title = format!("{} {} ({name})", session.spec.participant.code, session.study_arm().title());
-        let root = format!("{}_{}", nth + 1, slug(&name));
-        Ok(Playing { lane: ShownRecording { root, title, ..playing.lane.clone() }, ..playing })
+        // Paths of lanes are shown: a name as it is, numbered only where another recording has it, too.
+        let sign = |sign: char| if sign.is_alphanumeric() || "-._".contains(sign) { sign } else { '_' };
+        let root: String = names[nth].chars().map(sign).collect();
+        let is_double = names.iter().filter(|other| **other == names[nth]).count() > 1;
+        let root = match (recordings.len(), is_double) {
+            (1, _) => String::new(),
+            (_, true) => format!("{}-{root}", nth + 1),
+            (_, false) => root,
+        };
+        let title = title(playing.replay.session(), &names[nth]);
+        let films = playing.films.len();
+        Ok(Playing { lane: ShownRecording { root, title, films }, ..playing })
     };
     recordings.iter().enumerate().map(one).collect()
 }
@@ -346,7 +330,15 @@ fn write(
     let names: Vec<String> = recordings.iter().map(|recording| name(recording)).collect();
     let began: Vec<String> = playing.iter().map(Playing::began).collect();
     let id = format!("{} {} {}", names.join(" "), began.join(" "), rrd::mark());
-    let mut writer = match RerunWriter::open(&StreamIdentity { id, name: names.join(" | ") }, outlets, &lanes) {
+    let titles: Vec<&str> = lanes.iter().map(|lane| lane.title.as_str()).collect();
+    let told = |(lane, (one, began)): (&ShownRecording, (&Playing, &String))| {
+        let prefix = if lane.root.is_empty() { String::new() } else { format!("{} ", lane.root) };
+        let facts = facts(one.replay.session()).into_iter().chain([("began", began.clone())]);
+        facts.map(move |(name, value)| (format!("{prefix}{name}"), value)).collect::<Vec<_>>()
+    };
+    let facts = lanes.iter().zip(playing.iter().zip(&began)).flat_map(told).collect();
+    let identity = StreamIdentity { id, name: titles.join(" | "), facts };
+    let mut writer = match RerunWriter::open(&identity, outlets, &lanes) {
         Ok(writer) => writer,
         Err(error) => return Ok(Err(error)),
     };
@@ -392,15 +384,34 @@ pub fn unshown_films(recordings: &[PathBuf]) -> FileResult<Vec<String>> {
     Ok(unshown)
 }
 
-/// Errors, signals and beginning false beliefs of a recording, as the viewer shows them, each with its time on the
-/// trial's clock.
+/// An error, a signal or a false belief of a recording, as the viewer shows it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RecordedLandmark {
+    pub words: String,
+    /// On the trial's clock.
+    pub from: SessionTime,
+    /// On the trial's clock: of an error, the next press; `None` if it lasts to the end of the recording.
+    pub until: Option<SessionTime>,
+}
+
+/// The landmarks of these kinds in a recording, by their beginning.
 ///
 /// # Errors
 /// The recording cannot be read.
-pub fn landmarks(recording: &Path) -> FileResult<Vec<(SessionTime, String)>> {
-    let mut found = Vec::new();
+pub fn landmarks(recording: &Path, kinds: &[SceneLandmark]) -> FileResult<Vec<RecordedLandmark>> {
+    let mut found: Vec<RecordedLandmark> = Vec::new();
+    let mut open: HashMap<String, usize> = HashMap::new();
     Playing::open(recording)?.play(|moment| {
-        found.extend(moment.rows.iter().filter_map(landmark).map(|words| (moment.trial, words)));
+        for row in &moment.rows {
+            let Some((_, words)) = landmark(row).filter(|(kind, _)| kinds.contains(kind)) else { continue };
+            if let Some(last) = open.remove(&row.entity) {
+                found[last].until = Some(moment.trial);
+            }
+            if !words.is_empty() {
+                open.insert(row.entity.clone(), found.len());
+                found.push(RecordedLandmark { words, from: moment.trial, until: None });
+            }
+        }
     })?;
     Ok(found)
 }

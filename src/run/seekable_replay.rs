@@ -379,7 +379,8 @@ impl SeekableReplay {
         match what {
             ReplayLandmark::Error => {
                 let error = self.errors.iter().find(|error| error.time == now)?;
-                Some(format!("{}: {}", error.press, error.why))
+                let why = if self.is_blinded { &error.why } else { &error.with_cause };
+                Some(format!("{}: {why}", error.press))
             }
             ReplayLandmark::Signal => entries().find_map(|entry| match entry {
                 TimelineEvent::Noted(Event::SignalShown { by, signal, .. }) => {

@@ -20,8 +20,9 @@ HIGH, COLOURS, WIDE = 72, 40, 150
 # Another version of the browser draws edges a little differently.
 MOST_DIFFERENCE = 4
 PLACES = ["human_hand", "robot_hand"]
-# One pixel: of nothing, and of the ground of an order.
-PLAIN = {"blank": (0, 0, 0, 0), "card": (255, 253, 249, 255)}
+# Of nothing, and of the ground of an order. Nothing is as large as an item, and coded alike: in the viewer a picture takes the
+# place of another one of its kind only.
+PLAIN = {"blank": ((HIGH, HIGH), (0, 0, 0, 0)), "card": ((1, 1), (255, 253, 249, 255))}
 
 
 def looks():
@@ -33,7 +34,7 @@ def looks():
 
 def draw(page, look):
     if look in PLAIN:
-        return Image.new("RGBA", (1, 1), PLAIN[look])
+        return Image.new("RGBA", *PLAIN[look]).quantize(COLOURS, Image.Quantize.FASTOCTREE)
     shape, *colours = look.split()
     is_place = not colours
     wide = HIGH * WIDE // 100 if is_place else HIGH
@@ -61,7 +62,7 @@ def main():
         for name, look in wanted.items():
             drawn, path = draw(page, look), PICTURES / name
             if arguments.write:
-                drawn.save(path, optimize=True)
+                drawn.save(path, optimize=True, bits=8)
                 continue
             assert name in there, f"{path} is not there: make it with --write"
             difference = ImageChops.difference(drawn.convert("RGBA"), Image.open(path).convert("RGBA"))

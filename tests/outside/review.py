@@ -29,11 +29,11 @@ PATIENCE_S = 300
 
 def third_error(tomcom, recording):
     """The listed command of the third error, as words, and its time on the trial's clock in seconds."""
-    lines = run(tomcom, "review", recording, "--errors").splitlines()
-    kinds = {kind: sum(f"  # {kind}" in line for line in lines) for kind in ("ERROR", "assistant: ", "false belief")}
+    lines = run(tomcom, "review", recording, "--errors", "--signals", "--beliefs").splitlines()
+    kinds = {kind: sum(f", {kind}" in line for line in lines) for kind in ("error ", "signal: ", "false belief: ")}
     print(f"  {len(lines)} lines: {kinds}")
     assert all(kinds.values()), "no error, signal or false belief"
-    line = next(line for line in lines if "# ERROR 3, " in line)
+    line = next(line for line in lines if ", error 3: " in line)
     print(f"  {line}")
     words = shlex.split(line, comments=True)
     minutes, seconds = words[words.index("--at") + 1].split(":")
@@ -65,6 +65,8 @@ def main():
                 now = page.evaluate(TIME)
                 there = None if now is None else round(now / 1e9, 1)
             print(f"  the viewer in the browser stands at {there} s")
+            # The page says so until all of the recording is there.
+            page.wait_for_selector("#loading", state="detached", timeout=1000 * PATIENCE_S)
             if arguments.picture:
                 # What came last is drawn.
                 time.sleep(15)

@@ -18,6 +18,7 @@ use re_sdk_types::blueprint::components::{Corner2D, LinkAxis};
 use re_sdk_types::datatypes::{Range2D, TimeInt, TimeRange, TimeRangeBoundary, VisibleTimeRange};
 
 use crate::scene::WIDE;
+use tomcom_core::kitchen::Agent;
 
 /// Application name of all streams, by which recordings share one layout in the Rerun viewer.
 pub(super) const APPLICATION: &str = "tomcom";
@@ -25,8 +26,11 @@ pub(super) const APPLICATION: &str = "tomcom";
 pub const TRIAL_TIME: &str = "trial_time";
 /// The timeline of the session's clock.
 pub(super) const SESSION_TIME: &str = "session_time";
-/// Duration of the gaze's trail, in nanoseconds.
+/// Durations of the gaze's trail and of its last part, in nanoseconds.
 const TRAIL_NS: i64 = 1_500_000_000;
+const RECENT_NS: i64 = 500_000_000;
+/// Duration that plots show before and after the time cursor, in nanoseconds: the legend lies on what comes after it.
+const AROUND_NS: i64 = 30_000_000_000;
 
 /// Position of the camera, and the point at which it looks, in metres from the arm's base: the view shows the whole
 /// table from the human's side.
@@ -40,6 +44,7 @@ const PROBABILITY: [f64; 2] = [-0.03, 1.03];
 pub struct ShownRecording {
     /// Path of the entity that contains all entities of the recording; empty for the top level.
     pub root: String,
+    /// Whose recording it is.
     pub title: String,
     /// Number of films beside the kitchen.
     pub films: usize,
@@ -120,14 +125,16 @@ fn alone(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike
     let tabs = Tabs::new([arm, beliefs, benefit, probes, joints, forces, safety]);
     let below = Horizontal::new([overview(lane, properties), tabs.into()]).with_column_shares([3.0, 2.0]);
     let left = Vertical::new([seen(lane, properties), below.into()]).with_row_shares([5.0, 3.0]);
-    let side = Vertical::new([now(lane), happened(lane, properties)]).with_row_shares([1.0, 1.0]);
+    let words = Tabs::new([now(lane), about(lane)]);
+    let side = Vertical::new([words.into(), happened(lane, properties)]).with_row_shares([1.0, 1.0]);
     Horizontal::new([left.into(), side.into()]).with_column_shares([5.0, 3.0]).into()
 }
 
 /// Viewer layout for one of several recordings side by side.
 fn beside(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
     let curves = Tabs::new([overview(lane, properties), beliefs(lane, properties), benefit(lane, properties)]);
-    let words = Horizontal::new([now(lane), happened(lane, properties)]);
+    let told = Tabs::new([now(lane), about(lane)]);
+    let words = Horizontal::new([told.into(), happened(lane, properties)]);
     Vertical::new([seen(lane, properties), curves.into(), words.into()]).with_row_shares([5.0, 3.0, 4.0]).into()
 }
 
@@ -136,8 +143,9 @@ fn path(lane: &ShownRecording, entities: &str) -> String {
     format!("/{}", path.trim_matches('/'))
 }
 
+/// The name of a view, with whose it is where several recordings stand side by side.
 fn titled(lane: &ShownRecording, name: &str) -> String {
-    if lane.title.is_empty() { name.to_string() } else { format!("{}: {name}", lane.title) }
+    if lane.root.is_empty() { name.to_string() } else { format!("{}: {name}", lane.title) }
 }
 
 /// A view of the Rerun viewer with one property set.
@@ -174,22 +182,32 @@ fn seen(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike 
 }
 
 fn kitchen(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
-    let contents = ["kitchen/**", "human/gaze/**"].map(|entities| path(lane, entities));
-    let view = Spatial2DView::new(titled(lane, "Kitchen")).with_origin(path(lane, "kitchen")).with_contents(contents);
+    let mut contents: Vec<String> = ["kitchen/**", "human/gaze/**"].map(|entities| path(lane, entities)).into();
+    if !lane.root.is_empty() {
+        // In a narrow view the names of the storages would lie on others; their pictures stay.
+        let names = Agent::BOTH.map(|agent| format!("- {}", path(lane, &format!("kitchen/storage/{}", agent.name()))));
+        contents.extend(names);
+    }
+    let title = if lane.title.is_empty() { "Kitchen".to_string() } else { format!("Kitchen: {}", lane.title) };
+    let view = Spatial2DView::new(title).with_origin(path(lane, "kitchen")).with_contents(contents);
     // The display with the labels around it: the viewer by itself takes scaled pictures for larger than they are.
     let (x_range, y_range) = ([-30.0, WIDE + 30.0].into(), [-95.0, WIDE * 9.0 / 16.0 + 50.0].into());
     let view = with(view, "VisualBounds2D", &VisualBounds2D::new(Range2D { x_range, y_range }), properties);
     // Only gaze points are shown for a time, on either of the clocks.
-    let last = |timeline: &str| VisibleTimeRange {
-        timeline: timeline.into(),
-        range: TimeRange {
-            start: TimeRangeBoundary::CursorRelative(TimeInt(-TRAIL_NS)),
-            end: TimeRangeBoundary::CursorRelative(TimeInt(0)),
-        },
-    };
-    let ranges = VisibleTimeRanges::new([TRIAL_TIME, SESSION_TIME].map(last));
-    let gaze = path(lane, "human/gaze");
-    with(view, &format!("ViewContents/overrides{gaze}/visualizers"), &ranges, properties)
+    let mut view = view;
+    for (entity, last_ns) in [("human/gaze", TRAIL_NS), ("human/gaze/recent", RECENT_NS)] {
+        let range = |timeline: &str| VisibleTimeRange { timeline: timeline.into(), range: cursor(-last_ns, 0) };
+        let ranges = VisibleTimeRanges::new([TRIAL_TIME, SESSION_TIME].map(range));
+        let place = format!("ViewContents/overrides{}/visualizers", path(lane, entity));
+        view = with(view, &place, &ranges, properties);
+    }
+    view
+}
+
+/// A range of time about the viewer's cursor.
+fn cursor(from_ns: i64, to_ns: i64) -> TimeRange {
+    let [start, end] = [from_ns, to_ns].map(|ns| TimeRangeBoundary::CursorRelative(TimeInt(ns)));
+    TimeRange { start, end }
 }
 
 fn arm(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
@@ -199,11 +217,13 @@ fn arm(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
     with(view, "EyeControls3D", &eye, properties)
 }
 
-/// A view of curves, with a legend in a corner where the curves seldom are.
+/// A view of curves about the time cursor.
 fn series(lane: &ShownRecording, name: &str, entities: &[&str], properties: &mut Vec<Property>) -> ContainerLike {
     let contents: Vec<String> = entities.iter().map(|entities| path(lane, entities)).collect();
     let view = TimeSeriesView::new(titled(lane, name)).with_origin(path(lane, "")).with_contents(contents);
-    with(view, "PlotLegend", &PlotLegend::new().with_corner(Corner2D::RightTop), properties)
+    let view = with(view, "PlotLegend", &PlotLegend::new().with_corner(Corner2D::RightTop), properties);
+    let around = TimeAxis::new().with_view_range(cursor(-AROUND_NS, AROUND_NS));
+    with(view, "TimeAxis", &around, properties)
 }
 
 /// A view of belief probabilities of the aspects that were false once: the estimate and, for a simulated participant, its
@@ -226,12 +246,18 @@ fn lanes(lane: &ShownRecording, name: &str, entities: &[&str], properties: &mut 
 }
 
 fn overview(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
-    lanes(lane, "Errors, signals, false beliefs", &["error", "signal", "taken_for/**"], properties)
+    lanes(lane, "Errors, wrong beliefs, signals", &["error", "signal", "wrong_belief/**"], properties)
 }
 
 fn now(lane: &ShownRecording) -> ContainerLike {
     let page = path(lane, "human/now");
     TextDocumentView::new(titled(lane, "At this moment")).with_origin(page.clone()).with_contents([page]).into()
+}
+
+fn about(lane: &ShownRecording) -> ContainerLike {
+    let page = path(lane, "about");
+    let name = titled(lane, "Recording, colours, times");
+    TextDocumentView::new(name).with_origin(page.clone()).with_contents([page]).into()
 }
 
 /// A view of the list of events, each with its time on the trial's clock.

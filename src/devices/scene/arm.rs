@@ -172,7 +172,7 @@ impl RobotArmScene {
             }
             Event::RobotSafety { mode, .. } => {
                 let state = if *mode == SafetyMode::Normal { String::new() } else { mode.name().to_lowercase() };
-                let mut rows = vec![EntityUpdate::new(SAFETY, EntityData::State(state))];
+                let mut rows = vec![EntityUpdate::new(SAFETY, EntityData::State(state, entity_content::ERROR))];
                 if !mode.is_stopped() {
                     rows.push(EntityUpdate::new(CONTACT, EntityData::Points(Vec::new())));
                 }

@@ -9,7 +9,6 @@ use tomcom_core::kitchen::{Agent, AspectId, Kitchen, State, StateAspect};
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_core::mind::{RecordedBelief, RecordedEstimate};
-use tomcom_session::history::error_reasons::why;
 use tomcom_session::history::{event_words, wording};
 use tomcom_session::{Event, Session, TimelineEntry, TimelineEvent, TimestampedEvent};
 
@@ -20,12 +19,11 @@ const KNOWN: f64 = 0.95;
 /// Path of the page in words.
 const PAGE: &str = "human/now";
 /// Path of the lane with the human's errors, each until the next press.
-const ERRORS: &str = "error";
+pub const ERRORS: &str = "error";
 /// Path of the lane with the present signal.
-const SIGNALS: &str = "signal";
-
-/// Beginning of the paths of lanes with what is believed falsely.
-pub const TAKEN_FOR: &str = "taken_for/";
+pub const SIGNALS: &str = "signal";
+/// Beginning of the paths of lanes with what is believed falsely, by the estimate.
+pub const WRONG_BELIEFS: &str = "wrong_belief/";
 
 /// A belief about one state aspect.
 #[derive(Clone, Copy)]
@@ -39,7 +37,7 @@ struct Held<'a> {
 #[derive(Clone, Debug, Default)]
 pub struct BeliefScene {
     tick: Option<u64>,
-    /// For each state aspect, the falsely believed value; empty if the belief about the aspect is right.
+    /// For each state aspect, what it is taken for and what it is truly; empty if the belief about the aspect is right.
     taken_for: Vec<String>,
     /// For each state aspect, whether its estimate was false once: its curve begins there, so that plot and legend
     /// have only what was believed wrong.
@@ -54,8 +52,11 @@ pub struct BeliefScene {
     held_before: String,
     is_error: bool,
     signal: String,
+    /// Since when the signal is shown: the next one may have the same words.
+    signal_since: Option<SessionTime>,
     pub advice: String,
     estimate: String,
+    gaze: String,
     page: String,
 }
 
@@ -69,7 +70,7 @@ fn held_truly(aspect: &str) -> String {
 }
 
 fn wrong(aspect: &str) -> String {
-    format!("{TAKEN_FOR}{}", slug(aspect))
+    format!("{WRONG_BELIEFS}{}", slug(aspect))
 }
 
 /// Entity updates with the names and colours of the curves and marks.
@@ -77,7 +78,7 @@ pub fn fixed_beliefs(kitchen: &Kitchen) -> Vec<EntityUpdate> {
     let of_aspect = |(nth, aspect): (usize, &StateAspect)| {
         let colour = entity_content::of_aspect(AspectId(nth as u8));
         let name = wording::location(&aspect.name);
-        let own = SeriesStyle { name: format!("{name}, the participant's own"), colour };
+        let own = SeriesStyle { name: format!("{name} \u{25c6}"), colour };
         [
             EntityUpdate::new(estimated(&aspect.name), EntityData::Line(SeriesStyle { name, colour })),
             EntityUpdate::new(held_truly(&aspect.name), EntityData::Marks(own, MarkShape::Diamond)),
@@ -113,10 +114,13 @@ impl BeliefScene {
             Event::BeliefEstimated(witness) => rows.extend(self.before_press(session, witness)),
             _ => rows.extend(belief.and_then(|belief| self.between(session, stamped.time, belief)).unwrap_or_default()),
         }
-        let signal = session.shown.as_ref().map_or_else(String::new, |shown| wording::signal(&shown.signal));
-        if signal != self.signal {
-            rows.push(EntityUpdate::new(SIGNALS, EntityData::State(signal.clone())));
-            self.signal = signal;
+        let shown = session.shown.as_ref();
+        if shown.map(|shown| shown.since) != self.signal_since {
+            self.signal_since = shown.map(|shown| shown.since);
+            self.signal = shown.map_or_else(String::new, |shown| {
+                format!("{}, by the {}", wording::signal(&shown.signal), wording::sender(shown.by))
+            });
+            rows.push(EntityUpdate::new(SIGNALS, EntityData::State(self.signal.clone(), entity_content::SIGNAL)));
         }
         let page = self.page();
         if page != self.page {
@@ -133,16 +137,18 @@ impl BeliefScene {
         error: Option<ShownError<'_>>,
     ) -> Option<EntityUpdate> {
         let (at, (_, pressed)) =
-            (moment_on_clock(session.trial_clock(entry.time)), event_words::happening(&session.kitchen, &entry.what));
+            (in_both_clocks(session.trial_clock(entry.time)), event_words::happening(&session.kitchen, &entry.what));
         let was_error = std::mem::replace(&mut self.is_error, error.is_some());
         let own = std::mem::take(&mut self.own);
         let Some(error) = error else {
             self.press = format!("**Last press**, {at}: {pressed}. No error.\n");
-            return was_error.then(|| EntityUpdate::new(ERRORS, EntityData::State(String::new())));
+            return was_error
+                .then(|| EntityUpdate::new(ERRORS, EntityData::State(String::new(), entity_content::ERROR)));
         };
-        let reason = why(&session.kitchen, error.press);
-        self.press = format!("## Error {} at {at}: {pressed}\n\n**Why an error**: {reason}.\n{own}", error.number);
-        Some(EntityUpdate::new(ERRORS, EntityData::State(format!("{}: {pressed}", error.number))))
+        let why = error.why(&session.kitchen);
+        self.press = format!("## Error {} at {at}: {pressed}\n\n**Why an error**: {why}.\n{own}", error.number);
+        let words = format!("{}: {pressed}: {why}", error.number);
+        Some(EntityUpdate::new(ERRORS, EntityData::State(words, entity_content::ERROR)))
     }
 
     fn before_press(&mut self, session: &Session, witness: &RecordedEstimate) -> Vec<EntityUpdate> {
@@ -167,6 +173,7 @@ impl BeliefScene {
         }
         self.tick = Some(now.0 / EVERY_NS);
         let kitchen = &session.kitchen;
+        self.gaze = session.looked_at().map_or_else(String::new, |place| kitchen.location(place).label());
         let of_aspect = |aspect: usize| {
             let believes = kitchen.aspects[aspect].wordings[belief.aspects[aspect].most_likely()].as_str();
             Held { aspect, believes, p_truth: belief.p_truth(kitchen, session.state, AspectId(aspect as u8)) }
@@ -187,10 +194,11 @@ impl BeliefScene {
             if *is_drawn {
                 rows.push(EntityUpdate::new(estimated(name), EntityData::Value(one.p_truth)));
             }
-            let now_taken_for = if is_false { taken_for_what(kitchen, session.state, one) } else { "" };
-            if now_taken_for != taken_for {
-                *taken_for = now_taken_for.to_string();
-                rows.push(EntityUpdate::new(wrong(name), EntityData::State(taken_for.clone())));
+            let now_taken_for = if is_false { taken_for_and_truth(kitchen, session.state, one) } else { String::new() };
+            if now_taken_for != *taken_for {
+                *taken_for = now_taken_for;
+                let colour = entity_content::of_aspect(AspectId(one.aspect as u8));
+                rows.push(EntityUpdate::new(wrong(name), EntityData::State(taken_for.clone(), colour)));
             }
         }
         let unsure = held.iter().filter(|one| (FALSE_BELOW..KNOWN).contains(&one.p_truth));
@@ -232,7 +240,8 @@ impl BeliefScene {
             text => format!("\n**{what}**: {text}\n"),
         };
         let signal = told("Signal on the display", &self.signal);
-        format!("{}{signal}{}{}", self.press, told("Assistant", &self.advice), self.estimate)
+        let (advice, gaze) = (told("Assistant", &self.advice), told("Looks at", &self.gaze));
+        format!("{}{signal}{advice}{gaze}{}", self.press, self.estimate)
     }
 }
 
@@ -243,7 +252,7 @@ fn believed(kitchen: &Kitchen, state: State, held: &[Held]) -> String {
     wrong.sort_by(|a, b| a.p_truth.total_cmp(&b.p_truth));
     let line = |one: &&Held| {
         let (believes, truly) = (taken_for_what(kitchen, state, one), truth(kitchen, state, one.aspect));
-        format!("- **{}**: **{believes}**, truly {truly} (P(truth) {})\n", named(kitchen, one), percent(one))
+        format!("- **{}**: **{believes}**, truly {truly}; P(truth) {}\n", named(kitchen, one), percent(one))
     };
     wrong.iter().map(line).collect()
 }
@@ -261,9 +270,20 @@ fn percent(held: &Held) -> String {
     format!("{:.0} %", 100.0 * held.p_truth)
 }
 
+/// "empty, truly nori".
+fn taken_for_and_truth(kitchen: &Kitchen, state: State, held: &Held) -> String {
+    format!("{}, truly {}", taken_for_what(kitchen, state, held), truth(kitchen, state, held.aspect))
+}
+
+/// A time on the trial's clock as the console shows it, and as the viewer does: "1:25.6 (+85.6s)".
+fn in_both_clocks(time: SessionTime) -> String {
+    let tenths = time.0.div_ceil(100_000_000);
+    format!("{} (+{}.{}s)", moment_on_clock(time), tenths / 10, tenths % 10)
+}
+
 /// The falsely believed value of a state aspect.
 fn taken_for_what<'a>(kitchen: &Kitchen, state: State, held: &Held<'a>) -> &'a str {
-    if held.believes == truth(kitchen, state, held.aspect) { "not sure" } else { held.believes }
+    if held.believes == truth(kitchen, state, held.aspect) { "unsure" } else { held.believes }
 }
 
 fn truth(kitchen: &Kitchen, state: State, aspect: usize) -> &str {

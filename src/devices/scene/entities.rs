@@ -128,7 +128,9 @@ fn content(kitchen: &Kitchen, before: Option<State>, state: State, id: LocationI
     };
     let entity = format!("kitchen/{}", slug(&location.name));
     let on = area(kitchen, location.display, colour);
-    let below = words_at([on.left + on.width / 2.0, on.top + on.height], words, colour);
+    // Not below the display's edge.
+    let lowest = kitchen.display_m[1] * per_metre(kitchen) - ABOVE;
+    let below = words_at([on.left + on.width / 2.0, (on.top + on.height).min(lowest)], words, colour);
     let label = EntityData::Labels(if words.is_empty() { Vec::new() } else { vec![below] });
     let mut rows = vec![
         EntityUpdate::new(&entity, EntityData::Areas(vec![on.clone()])),

@@ -47,8 +47,8 @@ pub enum EntityData {
         colour: SceneColour,
     },
     Page(String),
-    /// Text of a lane that shows a state over time; an empty text clears the lane.
-    State(String),
+    /// Text of a lane that shows a state over time, and the colour of its bar; an empty text clears the lane.
+    State(String, SceneColour),
 }
 
 /// The outline of a rectangle in the kitchen.

@@ -8,8 +8,7 @@ use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::communication::{Sender, Signal, signals};
 use tomcom_core::kitchen::{Agent, AspectId, Kitchen};
 use tomcom_core::measures::JudgedPress;
-use tomcom_session::history::error_reasons::why;
-use tomcom_session::history::{event_words, wording};
+use tomcom_session::history::{error_reasons, event_words, wording};
 use tomcom_session::protocol::ProtocolEvent;
 use tomcom_session::{Event, Session, TimelineEntry, TimelineEvent, TimestampedEvent};
 
@@ -80,7 +79,7 @@ pub fn entry(session: &Session, entry: &TimelineEntry, error: Option<ShownError<
             let entity = format!("{}/presses", agent.name());
             match error.filter(|_| agent == Agent::Human) {
                 Some(error) => {
-                    let text = format!("ERROR {}, {text} ({})", error.number, why(&session.kitchen, error.press));
+                    let text = format!("ERROR {}, {text}: {}", error.number, error.why(&session.kitchen));
                     say(&entity, SceneLogLevel::Error, text, entity_content::ERROR)
                 }
                 None if no_effect.is_none() => {
@@ -109,19 +108,28 @@ pub fn entry(session: &Session, entry: &TimelineEntry, error: Option<ShownError<
     }
 }
 
-/// The words of an update that shows an error, a signal, or the beginning of a false belief; `None` for other updates.
-pub fn landmark(row: &EntityUpdate) -> Option<String> {
-    match (row.entity.as_str(), &row.shown) {
-        ("human/presses", EntityData::Words { level: SceneLogLevel::Error, text, .. })
-        | ("wizard/signals" | "assistant/signals", EntityData::Words { level: SceneLogLevel::Info, text, .. }) => {
-            Some(text.clone())
+/// What a reviewer looks for in a recording.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SceneLandmark {
+    Error,
+    Signal,
+    /// By the estimate.
+    FalseBelief,
+}
+
+/// The landmark that begins or ends with this update of its lane, with its words; at its end the words are empty. `None`
+/// for other updates.
+pub fn landmark(row: &EntityUpdate) -> Option<(SceneLandmark, String)> {
+    let EntityData::State(text, _) = &row.shown else { return None };
+    let (kind, words) = match row.entity.as_str() {
+        beliefs::ERRORS => (SceneLandmark::Error, format!("error {text}")),
+        beliefs::SIGNALS => (SceneLandmark::Signal, format!("signal: {text}")),
+        lane => {
+            let aspect = wording::location(lane.strip_prefix(beliefs::WRONG_BELIEFS)?);
+            (SceneLandmark::FalseBelief, format!("false belief: {aspect} taken for {text}"))
         }
-        (entity, EntityData::State(taken_for)) if !taken_for.is_empty() => {
-            let aspect = entity.strip_prefix(beliefs::TAKEN_FOR)?;
-            Some(format!("false belief: {} taken for {taken_for}", wording::location(aspect)))
-        }
-        _ => None,
-    }
+    };
+    Some((kind, if text.is_empty() { String::new() } else { words }))
 }
 
 pub fn protocol(event: &ProtocolEvent) -> EntityUpdate {
@@ -134,6 +142,13 @@ pub struct ShownError<'a> {
     /// Its number among the errors of the trial, from 1.
     pub number: usize,
     pub press: &'a JudgedPress,
+}
+
+impl ShownError<'_> {
+    /// Why the press was an error, with its cost and its cause.
+    pub fn why(&self, kitchen: &Kitchen) -> String {
+        error_reasons::with_cause(kitchen, self.press)
+    }
 }
 
 /// The error in this event, if its press was one.

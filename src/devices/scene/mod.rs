@@ -4,6 +4,7 @@
 //! A [`SessionScene`] follows a session event by event, live and from a recording. The scene does not depend on the
 //! viewer.
 
+mod about;
 mod arm;
 mod beliefs;
 mod entities;
@@ -12,9 +13,10 @@ mod happenings;
 mod pictures;
 mod probes;
 
+pub use about::{facts, title};
 pub use entities::WIDE;
 pub use entity_content::{EntityData, EntityUpdate};
-pub use happenings::landmark;
+pub use happenings::{SceneLandmark, landmark};
 pub use pictures::of_look as picture;
 
 use arm::RobotArmScene;
@@ -29,7 +31,7 @@ use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_session::{Event, Session, TimestampedEvent, apply};
 
 /// Version of the scene's content and layout. A stream with another version is rebuilt from the log.
-pub const VERSION: u32 = 7;
+pub const VERSION: u32 = 8;
 
 /// A time on the trial's clock, in minutes, seconds and tenths, rounded up: what happens at it is past then.
 pub fn moment_on_clock(time: SessionTime) -> String {
@@ -89,6 +91,7 @@ impl SessionScene {
         rows.extend(self.arm.fixed(kitchen));
         rows.extend(beliefs::fixed_beliefs(kitchen));
         rows.extend(happenings::fixed(&self.session));
+        rows.push(about::page(&self.session));
         rows
     }
 

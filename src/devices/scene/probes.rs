@@ -85,5 +85,5 @@ impl ProbeScene {
 }
 
 fn state(entity: impl Into<String>, text: impl Into<String>) -> EntityUpdate {
-    EntityUpdate::new(entity, EntityData::State(text.into()))
+    EntityUpdate::new(entity, EntityData::State(text.into(), entity_content::HUMAN))
 }

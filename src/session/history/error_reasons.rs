@@ -2,7 +2,7 @@
 //! the human's best press: it is the same live, in replays, and for raters, and tells nothing about beliefs.
 
 use super::order_needs::{ItemProgress, NeededItem, OrderNeeds, becomes, order_needs};
-use super::wording;
+use super::{event_words, wording};
 use tomcom_core::base::text::count;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::rules::NoEffectReason;
@@ -18,6 +18,8 @@ pub struct ExplainedError {
     pub press: String,
     /// "order 1 needs tuna", "the hand is empty".
     pub why: String,
+    /// The reason with cost and cause, which raters are not shown.
+    pub with_cause: String,
 }
 
 impl ExplainedError {
@@ -30,8 +32,18 @@ impl ExplainedError {
             time: press.time,
             press: wording::button(kitchen, Agent::Human, press.button),
             why: why(kitchen, press),
+            with_cause: with_cause(kitchen, press),
         })
     }
+}
+
+/// Why this press was an error, what it costs, and its cause where that is known: "order 1 has nori already; costs 2
+/// presses; cause: false belief about robot hand". Not for raters, who find the causes.
+pub fn with_cause(kitchen: &Kitchen, press: &JudgedPress) -> String {
+    let (why, cost) = (why(kitchen, press), event_words::error(kitchen, press));
+    let cost = cost.strip_prefix("error, ").unwrap_or(&cost);
+    // Where there is no other reason, the cost is the reason.
+    if cost.starts_with(&why) { cost.to_string() } else { format!("{why}; {cost}") }
 }
 
 /// Why this press was an error: why it had no effect; else what the orders need instead; else the better press.
@@ -57,10 +69,9 @@ pub fn why(kitchen: &Kitchen, press: &JudgedPress) -> String {
         ButtonAction::Trash => needed_by(kitchen, &orders, hand, held),
         ButtonAction::Use(_) | ButtonAction::Serve(_) => None,
     };
-    let excess = || count(press.verdict.excess.unsigned_abs(), "press", "presses");
     told.unwrap_or_else(|| match press.verdict.best {
-        Some(best) => format!("{} more than with {}", excess(), wording::button(kitchen, Agent::Human, best)),
-        None => format!("costs {}", excess()),
+        Some(best) => format!("{} would be better", wording::button(kitchen, Agent::Human, best)),
+        None => format!("costs {}", count(press.verdict.excess.unsigned_abs(), "press", "presses")),
     })
 }
 

@@ -308,7 +308,7 @@ pub fn arm_stopped(mode: SafetyMode, force_n: Option<f64>, joint: Option<u8>) ->
 }
 
 /// The cost of the press compared with the human's best press, and the cause where it is known.
-fn error(kitchen: &Kitchen, press: &JudgedPress) -> String {
+pub(super) fn error(kitchen: &Kitchen, press: &JudgedPress) -> String {
     let because = match press.cause {
         None => String::new(),
         Some(ErrorCause::Slip) => "; cause: slip".to_string(),

@@ -2,7 +2,7 @@
 
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_devices::scene::{EntityData, EntityUpdate, SceneInputs, SceneUpdate, SessionScene};
-use tomcom_session::history::wording;
+use tomcom_session::history::{error_reasons, wording};
 
 use super::{SESSIONS, folder, session, simulated};
 use crate::support::*;
@@ -90,7 +90,7 @@ fn a_scene_shows_every_press_signal_and_sample_once_at_its_time() {
 fn texts<'a>(moments: &'a [SceneUpdate], entity: &str) -> Vec<(&'a SceneUpdate, &'a str)> {
     let rows = moments.iter().flat_map(|moment| moment.rows.iter().map(move |row| (moment, row)));
     let text = |(moment, row): (&'a SceneUpdate, &'a EntityUpdate)| match &row.shown {
-        EntityData::Page(text) | EntityData::State(text) if row.entity == entity => Some((moment, text.as_str())),
+        EntityData::Page(text) | EntityData::State(text, _) if row.entity == entity => Some((moment, text.as_str())),
         _ => None,
     };
     rows.filter_map(text).collect()
@@ -111,11 +111,16 @@ fn a_page_says_what_the_error_was_why_and_what_was_believed_before_it() {
         let heading = format!("## Error {number} at ");
         let (moment, page) = pages.iter().find(|(_, page)| page.starts_with(&heading)).expect("a page of the error");
         assert_eq!(moment.step, *seq, "{heading}");
-        assert!(page.contains("**Why an error**: "), "{page}");
+        // The reason as replays have it, with what it costs.
+        let judged = replay.follower.judged.iter().find(|press| press.seq == *seq).expect("a judged press");
+        let why = error_reasons::why(&replay.session().kitchen, judged);
+        let sentence = page.split_once("**Why an error**: ").expect("a reason").1.lines().next().expect("a line");
+        assert!(sentence.starts_with(&why) && sentence.contains("costs "), "{why}: {sentence}");
         let (_, then) = pages.iter().rfind(|(_, page)| page.starts_with(&heading)).expect("a page of the error");
         // A table would be as wide as its longest line, and cut.
         assert!(!then.contains('|'), "{then}");
-        assert!(states.iter().any(|(moment, text)| moment.step == *seq && text.starts_with(&number.to_string())));
+        let is_bar = |text: &str| text.starts_with(&format!("{number}: ")) && text.contains(&why);
+        assert!(states.iter().any(|(moment, text)| moment.step == *seq && is_bar(text)), "{why}");
     }
     let believed =
         |by: &str| pages.iter().any(|(_, page)| page.contains(&format!("Believed wrong before it, by the {by}:")));
@@ -147,6 +152,30 @@ fn a_scene_shows_contents_as_the_page_draws_them() {
     seen.sort();
     seen.dedup();
     assert!(seen.len() > 2, "{} pictures, of nothing and of items", seen.len());
+}
+
+#[test]
+fn a_bar_of_a_wrong_belief_says_what_is_true_and_has_the_colour_of_the_place() {
+    let recording = Path::new("tests/golden/format-3-offers.jsonl");
+    let (moments, _) = shown(recording);
+    let replay = RecordingReplay::open(recording).expect("a recording");
+    let fixed = SessionScene::new(replay.session(), 0).fixed();
+    let mut count = 0;
+    for row in moments.iter().flat_map(|moment| &moment.rows) {
+        let Some(place) = row.entity.strip_prefix("wrong_belief/") else { continue };
+        let EntityData::State(text, colour) = &row.shown else { panic!("{row:?}") };
+        assert!(text.is_empty() || text.contains(", truly "), "{text}");
+        let curve = format!("human/belief/estimated/{place}");
+        let curve = fixed.iter().find(|row| row.entity == curve).expect("a curve");
+        assert!(matches!(&curve.shown, EntityData::Line(style) if style.colour == *colour), "{place}");
+        count += 1;
+    }
+    assert!(count > 2, "{count} wrong beliefs");
+    // Whose recording it is.
+    let about = fixed.iter().find(|row| row.entity == "about").expect("a page");
+    let EntityData::Page(text) = &about.shown else { panic!("{about:?}") };
+    let condition = replay.session().spec.trial.condition.name();
+    assert!(text.contains(&format!("- condition: **{condition}**")) && text.contains("**Colours**"), "{text}");
 }
 
 #[test]
@@ -200,7 +229,7 @@ fn a_scene_shows_answers_of_probes_beside_the_estimate() {
     let (moments, events) = shown(&recording);
     let state = |moment: &SceneUpdate, lane: &str| -> Option<String> {
         moment.rows.iter().find(|row| row.entity == lane).map(|row| match &row.shown {
-            EntityData::State(text) => text.clone(),
+            EntityData::State(text, _) => text.clone(),
             other => panic!("{other:?}"),
         })
     };

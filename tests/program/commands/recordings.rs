@@ -173,16 +173,25 @@ fn a_path_that_is_nearly_right_gets_a_suggestion() {
 #[test]
 fn errors_of_a_recording_are_listed_as_commands_that_open_the_viewer_there() {
     let recording = "tests/golden/format-3-hand.jsonl";
-    let output = check(&["review", recording, "--errors"], 0);
-    let told = String::from_utf8(output.stdout).expect("UTF-8");
+    let list = |asked: &[&str]| {
+        let output = check(&[&["review", recording], asked].concat(), 0);
+        String::from_utf8(output.stdout).expect("UTF-8")
+    };
+    let told = list(&["--errors", "--signals", "--beliefs"]);
     let line =
         |words: &str| told.lines().find(|line| line.contains(words)).unwrap_or_else(|| panic!("{words}: {told}"));
-    for words in ["# ERROR 1, human: ", "# ERROR 3, human: ", "# false belief: ", "# wizard: "] {
-        let (command, _) = line(words).split_once("  # ").expect("a comment");
+    for words in [", error 1: ", ", error 3: ", ", false belief: ", ", signal: "] {
+        let (command, comment) = line(words).split_once("  # to ").expect("a comment");
+        assert!(comment.split_once(words.trim_end()).is_some_and(|(until, _)| !until.is_empty()), "{comment}");
         let at = command.strip_prefix(&format!("tomcom review {recording} --at ")).expect("a command");
         // What is printed is taken: the refusal is of --errors beside it.
         assert!(complaint(&["review", recording, "--errors", "--at", at]).contains("--errors"), "{at}");
     }
-    let errors = told.matches("# ERROR ").count() as u64;
+    assert!(line(", false belief: ").contains(", truly "), "{told}");
+    // Each option lists its own only.
+    let listed = list(&["--errors"]);
+    assert!(listed.lines().all(|line| line.contains(", error ")), "{listed}");
+    assert!(list(&["--signals"]).lines().all(|line| line.contains(", signal: ")));
+    let errors = listed.lines().count() as u64;
     assert_eq!(Value::from(errors), figures(&["replay", recording, "--format", "json"], 0)["errors"]);
 }

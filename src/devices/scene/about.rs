@@ -1,0 +1,49 @@
+//! Whose session the scene shows, and what its colours and clocks mean.
+
+use super::entity_content::{EntityData, EntityUpdate};
+use tomcom_session::Session;
+
+/// Path of the page about the recording.
+const PAGE: &str = "about";
+
+/// The participant, the condition and what else tells recordings apart, each with its name.
+pub fn facts(session: &Session) -> Vec<(&'static str, String)> {
+    let spec = &session.spec;
+    vec![
+        ("participant", spec.participant.code.clone()),
+        ("condition", spec.trial.condition.name().to_string()),
+        ("study_arm", session.study_arm().title().to_string()),
+        ("robot_arm", spec.robot.arm.name().to_string()),
+        ("seed", spec.seed.to_string()),
+    ]
+}
+
+/// "P07, wizard with advice (2026-03-14-P07-1)".
+pub fn title(session: &Session, recording: &str) -> String {
+    let (code, arm) = (&session.spec.participant.code, session.study_arm().title());
+    if code.is_empty() { format!("{arm} ({recording})") } else { format!("{code}, {arm} ({recording})") }
+}
+
+/// The page in words.
+pub fn page(session: &Session) -> EntityUpdate {
+    let told = |(name, value): (&str, String)| match value.as_str() {
+        "" => String::new(),
+        value => format!("- {}: **{value}**\n", name.replace('_', " ")),
+    };
+    let facts: String = facts(session).into_iter().map(told).collect();
+    EntityUpdate::new(PAGE, EntityData::Page(format!("{facts}\n{LEGEND}")))
+}
+
+const LEGEND: &str = "\
+**Colours**: a place's name, its curve of P(truth) and its bars of wrong beliefs have one colour. Bars of errors are red, \
+those of signals pink. In the list: the human brown, the robot blue, the wizard violet, the assistant green, errors red.
+
+**P(truth)**: lines are the estimate, \u{25c6} is what a simulated participant believes itself before a press, crosses at 0 \
+are errors. A place is drawn from its first wrong belief on.
+
+**Gaze**: the circle is the newest gaze with the area that can be read, large dots are the last 0.5 s, small ones the last \
+1.5 s.
+
+**To a moment**: click a time in the list of what happened, press the right mouse button in the bars or curves, or drag in \
+the line at the bottom. `+85.6s` is 1:25.6 on the trial's clock. In the bars, ctrl and the wheel zoom.
+";

@@ -464,9 +464,9 @@ impl TutorialState {
         self.done.get(self.step) == Some(&true)
     }
 
-    /// The button that the step asks for now.
+    /// The button that the step asks for now; what the robot presses is asked of nobody.
     pub fn wanted<'a>(&self, step: &'a TutorialStep) -> Option<&'a String> {
-        step.presses.get(self.presses)
+        step.presses.get(self.presses).filter(|_| step.has_presses())
     }
 
     /// Only the button that the step asks for changes the tutorial's kitchen, so that hints remain correct.
@@ -522,6 +522,15 @@ impl Session {
             PhaseSpec::Tutorial { tutorial } => Some((tutorial, protocol.tutorial.as_ref()?)),
             _ => None,
         }
+    }
+
+    /// The plan's tutorial, if it is in another language than the participant's display.
+    pub fn foreign_tutorial(&self) -> Option<&Tutorial> {
+        let tutorial = self.spec.step.as_ref()?.phases.iter().find_map(|phase| match phase {
+            PhaseSpec::Tutorial { tutorial } => Some(tutorial),
+            _ => None,
+        })?;
+        (tutorial.language != self.spec.display.code()).then_some(tutorial)
     }
 
     /// The shown step; `None` if the tutorial is over.

@@ -55,6 +55,7 @@ pub enum ProbePicture {
     Order(usize),
     Location(usize),
     Storage(usize),
+    Trash,
 }
 
 /// Text of a freeze probe question and of its choices.
@@ -190,7 +191,15 @@ fn choices(kitchen: &Kitchen, words: &DisplayWords, question: &ProbeQuestion) ->
         };
         ProbeChoice { number: index + 1, words, shows }
     };
-    question.choices.iter().enumerate().map(choice).collect()
+    let mut choices: Vec<ProbeChoice> = question.choices.iter().enumerate().map(choice).collect();
+    // Orders stand as they do on the display, not shuffled: their place is what they are known by.
+    if question.about == ProbeSubject::NextOrder {
+        choices.sort_by_key(|choice| match choice.shows {
+            Some(ProbePicture::Order(order)) => order,
+            _ => usize::MAX,
+        });
+    }
+    choices
 }
 
 /// Text and picture of a location's content, or of the dish that an order asks for.
@@ -226,6 +235,7 @@ fn press(kitchen: &Kitchen, words: &DisplayWords, name: &str) -> (String, Option
     let Some(button) = kitchen.button_named(Agent::Robot, name) else { return (words.of_name(name), None) };
     let action = kitchen.button(Agent::Robot, button).action;
     let picture = match spot(kitchen, Agent::Robot, action) {
+        _ if action == ButtonAction::Trash => ProbePicture::Trash,
         SceneElement::Storage(storage) => ProbePicture::Storage(storage),
         SceneElement::Location(location) => place_picture(kitchen, LocationId(location as u8)),
     };

@@ -127,7 +127,7 @@ pub(super) fn tutorial(session: &Session) -> Option<DisplayedTutorial> {
         number: state.step + 1,
         of: tutorial.steps.len(),
         done: state.is_done(),
-        frames: frames.map(|target| frame(kitchen, target)).collect(),
+        frames: frames.map(|target| frame(kitchen, target)).chain(robot_spots(kitchen, step)).collect(),
         hint,
         presses: step.has_presses().then_some([state.presses, step.presses.len()]),
         explains_buttons: tutorial.has_first_presses(state.step),
@@ -150,6 +150,17 @@ fn robot_presses(session: &Session, step: &TutorialStep, state: &TutorialState) 
         Some(ShownRobotPress { to: button_place(session, button), contents: contents.collect() })
     };
     buttons.scan(state.kitchen, show).collect()
+}
+
+/// Where the robot presses in a step that shows what it does, each place once: they are framed as well.
+fn robot_spots(kitchen: &Kitchen, step: &TutorialStep) -> Vec<TutorialFrameTarget> {
+    let presses = step.presses.iter().filter(|_| step.kind == TutorialStepKind::Robot);
+    let buttons = presses.filter_map(|name| kitchen.button_named(Agent::Robot, name));
+    let mut spots: Vec<_> = buttons
+        .map(|button| TutorialFrameTarget::Place(spot(kitchen, Agent::Robot, kitchen.button(Agent::Robot, button).action)))
+        .collect();
+    spots.dedup();
+    spots
 }
 
 fn frame(kitchen: &Kitchen, target: TutorialTarget) -> TutorialFrameTarget {

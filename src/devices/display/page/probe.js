@@ -51,7 +51,10 @@ const Probe = (() => {
   function pictureOf(shows, { scene, contentOf }) {
     if (!shows) return `<span class="other">…</span>`;
     if (shows === "empty") return `<span class="nothing"></span>`;
-    if (shows.order !== undefined) return `<span class="order-sign">${Number(shows.order) + 1}</span>`;
+    if (shows === "trash") return Art.TRASH;
+    // The orders as they stand side by side, this one marked.
+    const orders = scene.locations.filter((spot) => spot.kind === "order").map((_, at) => `<i class="${at === shows.order ? "this" : ""}">${at === shows.order ? at + 1 : ""}</i>`);
+    if (shows.order !== undefined) return `<span class="order-sign">${orders.join("")}</span>`;
     if (shows.location !== undefined) {
       const { look, kind } = scene.locations[shows.location];
       return Art.place(kind === "place" ? look && look.shape : kind, 130);

@@ -35,12 +35,15 @@ const Room = (scene, fontFamily) => {
     return [x + w / 2 - wide / 2, y - NAME, wide, NAME];
   };
 
-  /** Size of a place's name, so that no name overlaps another one or leaves the stage. */
+  /** Size of a place's name, so that no name overlaps another one or leaves its zone; if it would be too small for that, the stage. */
   function nameSize(spot) {
     const obstacles = [...scene.tags.map(({ area }) => area), ...named.filter((other) => other !== spot).map((other) => nameArea(other, NAME_SIZE))];
-    for (let size = NAME_SIZE; size > 0.005; size -= 0.0005) {
-      const area = nameArea(spot, size);
-      if (area[0] >= 0.004 && area[0] + area[2] <= 0.996 && !obstacles.some((other) => overlaps(area, other))) return size;
+    const [zone, , wide] = [...sides(), table()].find((one) => overlaps(one, spot.area)) || [0, 0, 1];
+    for (const [from, to, least] of [[zone + 0.004, zone + wide - 0.004, 0.8 * LEAST_SIZE], [0.004, 0.996, 0.005]]) {
+      for (let size = NAME_SIZE; size > least; size -= 0.0005) {
+        const area = nameArea(spot, size);
+        if (area[0] >= from && area[0] + area[2] <= to && !obstacles.some((other) => overlaps(area, other))) return size;
+      }
     }
     return LEAST_SIZE / 2;
   }
@@ -122,11 +125,13 @@ const Room = (scene, fontFamily) => {
 
   /**
    * Area of a recipe that covers nothing of the kitchen: the largest free rectangle, or one that is large enough and
-   * near its order. At most so wide and high.
+   * near its order. At most so wide and high; `isClear`: not over the robot's side either, if there is room enough elsewhere.
    */
-  function forRecipe(others, order, most = [0.24, 0.5]) {
-    // A line is a picture with words beside it. A larger line height than `enough` does not improve reading.
-    const margin = 0.012, lines = 4.4, line = 5.2, enough = 0.08;
+  function forRecipe(others, order, { most = [0.24, 0.5], isClear = false } = {}) {
+    // A line is a picture with words beside it. A larger line height than `enough` does not improve reading, one of `least` is readable.
+    const margin = 0.012, lines = 4.4, line = 5.2, enough = 0.08, least = 0.06;
+    const clear = isClear && forRecipe([...others, sides()[0]], order, { most });
+    if (clear && Math.min(clear[3] / lines, (clear[2] * ratio) / line) >= least) return clear;
     const walls = others.map((rect) => grown(rect, [margin, margin * ratio, margin, margin * ratio]));
     const lefts = [margin, ...walls.map(([x, , w]) => x + w)], rights = [1 - margin, ...walls.map(([x]) => x)];
     const aim = order ? order[0] + order[2] / 2 : 0.5;
@@ -156,11 +161,13 @@ const Room = (scene, fontFamily) => {
    * Where a page of the tutorial can stand: where most room is, beside the recipe that it explains; or else over the robot's side, unless
    * the page is about it.
    */
-  function forLesson(others, recipe, frames) {
-    const all = recipe ? [...others, recipe] : others, [robots] = sides(), tags = scene.tags.map(({ area }) => area);
-    const beside = forRecipe(all, undefined, LESSON);
-    if (frames.some(isRobots)) return [beside];
-    return [beside, forRecipe(all.filter((rect) => tags.includes(rect) || !overlaps(rect, robots)), undefined, LESSON)];
+  function forLesson(others, recipe, { kind, frames }) {
+    const all = recipe ? [...others, recipe] : others, [robots, humans] = sides(), tags = scene.tags.map(({ area }) => area);
+    const over = (side, also = []) => forRecipe([...all.filter((rect) => tags.includes(rect) || !overlaps(rect, side)), ...also], undefined, { most: LESSON });
+    const beside = forRecipe(all, undefined, { most: LESSON });
+    // What the robot does is watched: the page stands on the other side.
+    if (kind === "robot") return [forRecipe([...all, robots], undefined, { most: LESSON }), over(humans, [robots])];
+    return frames.some(isRobots) ? [beside] : [beside, over(robots)];
   }
 
   return {

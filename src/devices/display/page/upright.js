@@ -123,7 +123,7 @@ const Upright = (wall, fontFamily, ratio) => {
   }
 
   /** Where a text of the tutorial stands: below the orders, unless a recipe is open there. Only a text that has no room there hides the robot's side, and never if it is about it. */
-  function forLesson(_, recipe, frames) {
+  function forLesson(_, recipe, { frames }) {
     if (recipe) return [zones.places];
     if (frames.some(across.isRobots)) return frames.some(({ place }) => place && !across.isRobots({ place })) ? [free] : [free, zones.places];
     return [free, [free[0], free[1], free[2], zones.theirs[1] + zones.theirs[3] - free[1]]];

@@ -114,9 +114,9 @@ pub(super) fn tutorial(session: &Session) -> Option<DisplayedTutorial> {
     let frames = step.point_at.iter().filter_map(|name| TutorialTarget::named(kitchen, name));
     let are_shown = step.kind == TutorialStepKind::Recipes && !state.are_cards_hidden;
     let dishes = (0..kitchen.dishes.len()).filter(|_| are_shown);
-    let hint = state.wanted(step).map(|button| {
+    let hint = state.wanted().map(|button| {
         // After a wrong press, the page marks the required button at once.
-        let after_s = if state.is_missed(step) { 0.0 } else { step.hint_after_s(state.presses) };
+        let after_s = if state.is_missed() { 0.0 } else { step.hint_after_s(state.presses) };
         RequestedTutorialButton { button: button.clone(), after_s }
     });
     Some(DisplayedTutorial {
@@ -131,7 +131,7 @@ pub(super) fn tutorial(session: &Session) -> Option<DisplayedTutorial> {
         hint,
         presses: step.has_presses().then_some([state.presses, step.presses.len()]),
         explains_buttons: tutorial.has_first_presses(state.step),
-        missed: state.is_missed(step) || (step.kind == TutorialStepKind::Probe && state.wrong.is_some()),
+        missed: state.is_missed() || (step.kind == TutorialStepKind::Probe && state.wrong.is_some()),
         cards: dishes.map(|index| card(kitchen, DishId(index as u8))).collect(),
         seconds: step.seconds.filter(|_| step.is_timed() && are_shown),
         left_s: state.cards_left_s(step),

@@ -82,7 +82,7 @@ const Hands = (() => {
     const lesson = Stage.shown() && Stage.shown().tutorial;
     if (lesson && Tutorial.key(event.key, lesson, isHeld)) return event.preventDefault();
     const button = buttonOf(scene, event);
-    if (!button && lesson && Tutorial.refuse(event.key, lesson)) return undefined;
+    if (!button && lesson && (isHeld || Tutorial.refuse(event.key, lesson))) return undefined;
     if (!button) return isHeld || event.key.length > 1 || Stage.sayNothing(false);
     event.preventDefault();
     Stage.useBadges("keys");
@@ -123,7 +123,9 @@ const Hands = (() => {
         if (!isDown || before[number] || !scene) return;
         Stage.useBadges("pad", pad.mapping === "standard");
         if (Stage.asks()) return Probe.press(PAD[number], false);
-        const lesson = Stage.shown() && Stage.shown().tutorial;
+        const { tutorial: lesson, question } = Stage.shown() || {};
+        // Of a questionnaire, only the consent is a gamepad's, which is held.
+        if (question) return question.form?.kind === "consent" || Stage.say("nothing");
         if (lesson && PAD[number] && Tutorial.pad(PAD[number], lesson)) return;
         const button = scene.buttons.find(({ gamepad }) => gamepad === number);
         if (!button) return Stage.sayNothing(false);

@@ -3,7 +3,7 @@
 const Readiness = (() => {
   // As the console's check of the display has it.
   const SMALL_PX = [1280, 720], SLOW_MS = 30;
-  let took = null, made = null, scene = null, words = {};
+  let took = null, made = null, scene = null, words = {}, isBoxes = false;
 
   const filled = (said, ...values) => values.reduce((text, value) => text.replace("#", value), said || "");
 
@@ -36,7 +36,7 @@ const Readiness = (() => {
     // Who holds an upright screen in the hand reads it from nearby.
     const isSmall = wide >= high && (wide < SMALL_PX[0] || high < SMALL_PX[1]);
     const lines = [line(filled(words[isSmall ? "ready screen small" : "ready screen"], wide, high), !isSmall)];
-    if (lacksFont()) lines.push(line(words["ready font"], false));
+    if (isBoxes) lines.push(line(words["ready font"], false));
     if (scene.foreign_tutorial) lines.push(line(words["ready tutorial"], false));
     if (took !== null) lines.push(line(filled(words["ready delay"], Math.round(took)), took <= SLOW_MS));
     if (Sound.isOn()) lines.push(Sound.hasVoice() ? line(words["ready sound"], false, hear) : line(words["ready voice off"], false));
@@ -55,6 +55,7 @@ const Readiness = (() => {
   /** The list of what is ready, for a card. */
   function build(kitchen, element) {
     [scene, words] = [kitchen, kitchen.words];
+    isBoxes = lacksFont();
     made = element("p", "readiness");
     draw();
     return made;

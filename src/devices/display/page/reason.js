@@ -39,7 +39,7 @@ const Reason = (() => {
       const top = y - line / 2 + down * STEP * line, left = Math.min(0.994 - wide, Math.max(0.006, x - wide / 2 + (across * wide) / (2 * TRIES[1])));
       if (top < 0.006 || top + line > 0.994) continue;
       // Hiding something is worse than any distance.
-      const cost = 1000 * hidden([left, top]) + Math.abs(top + line / 2 - y) + 0.5 * Math.abs(left + wide / 2 - x);
+      const covers = hidden([left, top]), cost = (covers ? 10 + 1000 * covers : 0) + Math.abs(top + line / 2 - y) + 0.5 * Math.abs(left + wide / 2 - x);
       if (cost < least) [best, least] = [[left, top, wide, line], cost];
     }
     return best;

@@ -325,7 +325,7 @@ const Stage = (() => {
     parts.reach.classList.toggle("open", Boolean(isNear));
     if (isNear) {
       const spot = "storage" in press.at ? scene.storages[press.at.storage] : scene.locations[press.at.location], [wide, high] = room.em;
-      put(parts.reach, [spot.area[0] - 1.2 * wide, spot.area[1] - 0.6 * high, 3.4 * wide, 3.4 * high]);
+      put(parts.reach, [spot.area[0] - 1.2 * wide, spot.area[1] + spot.area[3] - 2.6 * high, 3.4 * wide, 3.4 * high]);
     }
     if (root.dataset.robot === (does || "") && shown) return;
     root.dataset.robot = does || "";
@@ -439,7 +439,7 @@ const Stage = (() => {
   /** What was pressed does nothing, or, where it is one of the kitchen's buttons, nothing yet. */
   function sayNothing(isButton) {
     const stage = shown && shown.stage;
-    say(isButton && stage === "ready" ? "nothing yet" : isButton && stage === "paused" ? "paused text" : "nothing");
+    say(isButton && ["welcome", "instruction", "ready"].includes(stage) ? "nothing yet" : isButton && stage === "paused" ? "paused text" : "nothing");
   }
 
   /** A press without a connection has no effect, and the page says so once more. */

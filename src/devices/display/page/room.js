@@ -63,7 +63,13 @@ const Room = (scene, fontFamily) => {
     return both.map(([x, , w], human) => grown([x, top, w, bottom - top], [human ? 0.045 : 0.022, 0.085, human ? 0.022 : 0.045, 0.035]));
   }
 
-  const table = () => grown(around(areas("place")), [0.03, 0.085, 0.03, 0.03]);
+  /** The area of the places between the two, as wide as their names need, as far as the sides leave room. */
+  function table() {
+    const [x, , w] = around(areas("place")), names = around(scene.locations.filter(({ kind }) => kind === "place").map((spot) => nameArea(spot, NAME_SIZE)));
+    const [robots, humans] = sides(), room = [x - robots[0] - robots[2], humans[0] - x - w].map((wide) => (wide > 0.036 ? wide - 0.006 : 0.03));
+    const [left, right] = [x - names[0], names[0] + names[2] - x - w].map((over, side) => Math.min(room[side], Math.max(0.03, over + 0.006)));
+    return grown(around(areas("place")), [left, 0.085, right, 0.03]);
+  }
 
   /** Where the robot's arm comes from: the edge of its side that is nearest to the viewer. */
   function base() {

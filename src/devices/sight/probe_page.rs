@@ -191,15 +191,7 @@ fn choices(kitchen: &Kitchen, words: &DisplayWords, question: &ProbeQuestion) ->
         };
         ProbeChoice { number: index + 1, words, shows }
     };
-    let mut choices: Vec<ProbeChoice> = question.choices.iter().enumerate().map(choice).collect();
-    // Orders stand as they do on the display, not shuffled: their place is what they are known by.
-    if question.about == ProbeSubject::NextOrder {
-        choices.sort_by_key(|choice| match choice.shows {
-            Some(ProbePicture::Order(order)) => order,
-            _ => usize::MAX,
-        });
-    }
-    choices
+    question.choices.iter().enumerate().map(choice).collect()
 }
 
 /// Text and picture of a location's content, or of the dish that an order asks for.

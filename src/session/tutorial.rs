@@ -522,7 +522,8 @@ impl TutorialState {
     fn onward(&self, kitchen: &Kitchen, button: ButtonId) -> Option<(State, Vec<String>)> {
         let is_it = |name: &String| kitchen.button_named(Agent::Human, name) == Some(button);
         let at = self.left.iter().position(is_it)?;
-        let goal = self.left.iter().try_fold(self.kitchen, |state, name| pressed(kitchen, state, Agent::Human, name))?;
+        let goal =
+            self.left.iter().try_fold(self.kitchen, |state, name| pressed(kitchen, state, Agent::Human, name))?;
         let after = pressed(kitchen, self.kitchen, Agent::Human, &self.left[at])?;
         Some((after, ordered(kitchen, after, &without(&self.left, at), goal, &mut HashSet::new())?))
     }

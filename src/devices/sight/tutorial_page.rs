@@ -152,15 +152,13 @@ fn robot_presses(session: &Session, step: &TutorialStep, state: &TutorialState) 
     buttons.scan(state.kitchen, show).collect()
 }
 
-/// Where the robot presses in a step that shows what it does, each place once: they are framed as well.
-fn robot_spots(kitchen: &Kitchen, step: &TutorialStep) -> Vec<TutorialFrameTarget> {
+/// Where the robot presses in a step that shows what it does: the places are framed as well.
+fn robot_spots(kitchen: &Kitchen, step: &TutorialStep) -> impl Iterator<Item = TutorialFrameTarget> {
     let presses = step.presses.iter().filter(|_| step.kind == TutorialStepKind::Robot);
     let buttons = presses.filter_map(|name| kitchen.button_named(Agent::Robot, name));
-    let mut spots: Vec<_> = buttons
-        .map(|button| TutorialFrameTarget::Place(spot(kitchen, Agent::Robot, kitchen.button(Agent::Robot, button).action)))
-        .collect();
-    spots.dedup();
-    spots
+    buttons
+        .map(|button| spot(kitchen, Agent::Robot, kitchen.button(Agent::Robot, button).action))
+        .map(TutorialFrameTarget::Place)
 }
 
 fn frame(kitchen: &Kitchen, target: TutorialTarget) -> TutorialFrameTarget {

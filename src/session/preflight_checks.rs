@@ -101,6 +101,14 @@ fn human_model(session: &Session) -> Option<PreflightCheck> {
     (*human != HumanModel::default()).then(|| PreflightCheck::ok("human model", human.named()))
 }
 
+/// Whether the participant reads the tutorial in another language than the rest of the page.
+fn tutorial(session: &Session) -> Option<PreflightCheck> {
+    let (tutorial, page) = (session.foreign_tutorial()?, session.spec.display.code());
+    let found = format!("in the language \"{}\", the page in \"{page}\"", tutorial.language);
+    let remedy = format!("translate the plan's tutorial, and name the file as the plan's with .{page}.toml");
+    Some(PreflightCheck::new("tutorial", PreflightVerdict::Warning, found, remedy))
+}
+
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RejectedGaze {
     /// Who was rejected, and why.
@@ -125,6 +133,7 @@ pub fn participant(
     let mut checks: Vec<PreflightCheck> = condition(session).into_iter().collect();
     checks.push(PreflightCheck::ok("participant", format!("{}, {who}", spec.code)));
     checks.extend(human_model(session));
+    checks.extend(tutorial(session));
     match spec.gaze {
         GazeSource::Simulated => checks.push(PreflightCheck::ok("gaze", "simulated gaze: it comes with the trial")),
         GazeSource::None => checks.push(PreflightCheck::ok("gaze", "this session uses no gaze")),

@@ -1,6 +1,8 @@
 //! The participant's tutorial, a phase of a study plan: pages on the display before the first practice, which the
 //! participant turns.
 
+use std::collections::HashSet;
+
 use serde::{Deserialize, Serialize};
 
 use crate::admit::unless;
@@ -63,8 +65,8 @@ pub struct TutorialStep {
     /// What the page frames: locations, the human's buttons, or "human" and "robot" for their areas.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub point_at: Vec<String>,
-    /// With `press` and `order`: the human's buttons, in the order in which the participant has to press them; with
-    /// `robot`: the robot's.
+    /// With `press` and `order`: the human's buttons, in the order in which they are marked, or in another one with the same
+    /// result; with `robot`: the robot's.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub presses: Vec<String>,
     /// With `order`, with a signal that shows a recipe, with a text that explains orders, and with a probe, whose answers
@@ -206,6 +208,32 @@ impl Tutorial {
 fn pressed(kitchen: &Kitchen, state: State, agent: Agent, button: &str) -> Option<State> {
     let press = kitchen.try_press(state, agent, kitchen.button_named(agent, button)?);
     press.effective.then_some(press.after)
+}
+
+/// An order of these buttons of the human in which each has an effect and the last one reaches the goal: the given one, if
+/// it does. `tried`: kitchens with the buttons that are left, which are searched no more.
+fn ordered(
+    kitchen: &Kitchen,
+    state: State,
+    left: &[String],
+    goal: State,
+    tried: &mut HashSet<(State, Vec<String>)>,
+) -> Option<Vec<String>> {
+    if left.is_empty() {
+        return (state == goal).then(Vec::new);
+    }
+    if !tried.insert((state, left.to_vec())) {
+        return None;
+    }
+    (0..left.len()).filter(|&at| !left[..at].contains(&left[at])).find_map(|at| {
+        let after = pressed(kitchen, state, Agent::Human, &left[at])?;
+        let rest = ordered(kitchen, after, &without(left, at), goal, tried)?;
+        Some(std::iter::once(left[at].clone()).chain(rest).collect())
+    })
+}
+
+fn without(names: &[String], at: usize) -> Vec<String> {
+    [&names[..at], &names[at + 1..]].concat()
 }
 
 fn dish_of(kitchen: &Kitchen, step: &TutorialStep) -> Option<DishId> {
@@ -389,6 +417,8 @@ pub struct TutorialState {
     pub kitchen: State,
     /// Number of the step's presses that are done.
     pub presses: usize,
+    /// Buttons of the step that are still to be pressed, in the order in which they are asked for.
+    pub left: Vec<String>,
     /// In the shown step.
     pub last: Option<TutorialPress>,
     /// Number of presses in the tutorial so far.
@@ -414,6 +444,7 @@ impl TutorialState {
             shown_before: vec![SessionTime::ZERO; steps],
             kitchen: kitchen.empty_state(),
             presses: 0,
+            left: Vec::new(),
             last: None,
             pressed: 0,
             are_cards_hidden: false,
@@ -434,6 +465,9 @@ impl TutorialState {
         self.step = step;
         self.kitchen = tutorial.state_at(kitchen, step);
         (self.presses, self.last, self.wrong) = (0, None, None);
+        // What the robot presses is asked of nobody.
+        let asked = tutorial.steps.get(step).filter(|step| step.has_presses());
+        self.left = asked.map_or_else(Vec::new, |step| step.presses.clone());
         // Recipe cards that were shown for their time are not shown again when the participant goes back in the
         // tutorial: the recipes have to be remembered.
         self.are_cards_hidden = tutorial.steps.get(step).is_some_and(TutorialStep::is_timed) && self.is_done();
@@ -455,8 +489,8 @@ impl TutorialState {
     }
 
     /// Whether the last press was not the one that the step still asks for.
-    pub fn is_missed(&self, step: &TutorialStep) -> bool {
-        self.wanted(step).is_some() && self.last.is_some_and(|last| !last.is_right)
+    pub fn is_missed(&self) -> bool {
+        self.wanted().is_some() && self.last.is_some_and(|last| !last.is_right)
     }
 
     /// Whether the participant may continue from the shown step.
@@ -465,22 +499,33 @@ impl TutorialState {
     }
 
     /// The button that the step asks for now.
-    pub fn wanted<'a>(&self, step: &'a TutorialStep) -> Option<&'a String> {
-        step.presses.get(self.presses)
+    pub fn wanted(&self) -> Option<&String> {
+        self.left.first()
     }
 
-    /// Only the button that the step asks for changes the tutorial's kitchen, so that hints remain correct.
-    pub(crate) fn press(&mut self, step: &TutorialStep, kitchen: &Kitchen, button: ButtonId) {
+    /// Only a button after which the step's other buttons still lead to what it asks for changes the tutorial's kitchen, so
+    /// that hints remain correct; the order of the file is one of several.
+    pub(crate) fn press(&mut self, kitchen: &Kitchen, button: ButtonId) {
         self.pressed += 1;
-        let is_right =
-            self.wanted(step).is_some_and(|wanted| kitchen.button_named(Agent::Human, wanted) == Some(button));
+        let onward = self.onward(kitchen, button);
         let no_effect = kitchen.no_effect(self.kitchen, Agent::Human, button);
-        self.last = Some(TutorialPress { number: self.pressed, button, is_right, no_effect });
-        if is_right {
-            self.kitchen = kitchen.try_press(self.kitchen, Agent::Human, button).after;
+        self.last = Some(TutorialPress { number: self.pressed, button, is_right: onward.is_some(), no_effect });
+        if let Some((after, left)) = onward {
+            (self.kitchen, self.left) = (after, left);
             self.presses += 1;
-            self.finish(self.presses == step.presses.len());
+            self.finish(self.left.is_empty());
         }
+    }
+
+    /// The kitchen after a press of this button, and an order of the other buttons of the step that leads from there to the
+    /// same kitchen as the step's own order; `None` if there is none.
+    fn onward(&self, kitchen: &Kitchen, button: ButtonId) -> Option<(State, Vec<String>)> {
+        let is_it = |name: &String| kitchen.button_named(Agent::Human, name) == Some(button);
+        let at = self.left.iter().position(is_it)?;
+        let goal =
+            self.left.iter().try_fold(self.kitchen, |state, name| pressed(kitchen, state, Agent::Human, name))?;
+        let after = pressed(kitchen, self.kitchen, Agent::Human, &self.left[at])?;
+        Some((after, ordered(kitchen, after, &without(&self.left, at), goal, &mut HashSet::new())?))
     }
 
     pub(crate) fn answer(&mut self, is_right: bool, choice: u8) {
@@ -522,6 +567,15 @@ impl Session {
             PhaseSpec::Tutorial { tutorial } => Some((tutorial, protocol.tutorial.as_ref()?)),
             _ => None,
         }
+    }
+
+    /// The plan's tutorial, if it is in another language than the participant's display.
+    pub fn foreign_tutorial(&self) -> Option<&Tutorial> {
+        let tutorial = self.spec.step.as_ref()?.phases.iter().find_map(|phase| match phase {
+            PhaseSpec::Tutorial { tutorial } => Some(tutorial),
+            _ => None,
+        })?;
+        (tutorial.language != self.spec.display.code()).then_some(tutorial)
     }
 
     /// The shown step; `None` if the tutorial is over.
@@ -596,7 +650,7 @@ pub(crate) fn apply(session: &mut Session, event: &TutorialEvent, now: SessionTi
         }
         TutorialEvent::Pressed { button } => {
             if let Some(button) = kitchen.button_named(Agent::Human, button) {
-                state.press(step, kitchen, button);
+                state.press(kitchen, button);
             }
         }
         TutorialEvent::CardsHidden { .. } => state.hide_cards(),

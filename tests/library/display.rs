@@ -469,6 +469,26 @@ fn every_language_has_a_line_for_every_reason_that_names_no_content() {
 }
 
 #[test]
+fn a_reason_is_a_sentence_that_begins_with_the_place() {
+    for path in SESSIONS {
+        let kitchen = files(path).kitchen.kitchen;
+        for language in ["de", "es", "fr", "it"] {
+            let spec = DisplaySpec { language: language.to_string(), ..DisplaySpec::default() };
+            let words = DisplayWords::for_display(&spec);
+            for place in
+                kitchen.locations.iter().filter(|place| place.kind == tomcom_core::kitchen::LocationKind::Place)
+            {
+                let said = words.in_sentence(&place.name);
+                assert_ne!(said, words.of_name(&place.name), "{language}: without an article");
+                assert!(said.starts_with(char::is_uppercase), "{language}: {said}");
+                let longest = words.of_page()["why place_full"].replace('#', &said);
+                assert!(longest.chars().count() <= 50, "{longest}");
+            }
+        }
+    }
+}
+
+#[test]
 fn the_page_says_that_the_robot_is_stopped_also_where_a_real_one_stands() {
     for arm in [RobotDepiction::Hand, RobotDepiction::None] {
         let mut files = files("sessions/default.toml");

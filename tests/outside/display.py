@@ -288,7 +288,7 @@ def tells_a_dead_connection(tomcom, browser, folder, seed):
         told_s, words = time.monotonic() - began, plain(page.ask("document.querySelector('.toast').innerText"))
         assert words.startswith("Connection lost"), words
         page.page.keyboard.press("x")
-        page.wait_for("document.querySelector('.toast.shakes')")
+        page.wait_for("document.querySelector('.toast.refuses')")
         console.wait_for("PAUSED")
         paused_s = time.monotonic() - began
         between.stalled.clear()
@@ -397,7 +397,7 @@ def has_phases(tomcom, browser, folder):
             if page.ask("document.getElementById('stage').dataset.stage") == "ready":
                 break
         page.stage("ready")
-        assert "Bereit?" in page.ask("document.querySelector('.sheet').innerText")
+        assert "Machen Sie sich bereit" in page.ask("document.querySelector('.sheet').innerText")
         console.key(".")
         page.stage("running")
         console.end()

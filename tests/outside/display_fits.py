@@ -86,6 +86,12 @@ MEASURE = """([states, DISTANCE_M]) => Object.entries(states).map(([name, sight]
     const frame = { left: own.left + px("left"), right: own.right - px("right"), top: own.top + px("top"), bottom: own.bottom - px("bottom") };
     for (const text of texts) if (meets(text, frame) && !inside(text, frame)) found.push(`the frame crosses "${text.said}"`);
   }
+  // A reason hides nothing that is pressed next, a recipe nothing that the robot does.
+  for (const why of [...document.querySelectorAll(".why")].filter((made) => isSeen(made) && made.textContent)) {
+    for (const made of solid.filter((one) => !one.matches(".flash"))) if (meets(box(why), box(made))) found.push(`"${why.textContent}" hides ${made.className} ${made.textContent || made.parentNode.className}`);
+  }
+  const open = document.querySelector(".recipe.open"), theirs = document.querySelector(".zone.robot");
+  if (open && meets(box(open), box(theirs))) found.push("the recipe hides the robot's side");
   const ruler = document.createElement("canvas").getContext("2d");
   const minutes = Object.fromEntries(texts.map(({ made, said }) => {
     const { fontWeight, fontSize, fontFamily } = getComputedStyle(made);
@@ -179,6 +185,10 @@ def main():
                         page.page.wait_for_timeout(150)
                         every = states(here, kitchen)
                         if size in (SIZES[0], UPRIGHT[0]):
+                            show(page, every["empty"])
+                            show(page, every["highlight of robot_hand"])
+                            if page.ask("document.querySelectorAll('.highlight').length !== 1 || !document.querySelector('.robot-hand.highlight')"):
+                                failed.setdefault("a signal about the robot's hand is not at the hand", []).append(f"{kitchen} {language} {size[0]}x{size[1]}")
                             show(page, every["empty"])
                             covered = page.ask(HAND.replace("PLACES", json.dumps(places(kitchen))))
                             if covered:

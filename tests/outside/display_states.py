@@ -95,7 +95,13 @@ def tutorial_texts(scene, kitchen):
     steps = [step for step in tutorial_steps(scene, kitchen) if step["kind"] in ("text", "press", "order", "signal", "robot", "probe")]
     pressed = lambda step: step["kind"] in ("press", "order")
     first = next(step["id"] for step in steps if step["kind"] == "press")
-    frames = lambda step: [at[name] if name in at else {"area": name} for name in step.get("point_at", [])]
+    shelves = {shelf["item"].split(" ")[0]: {"place": {"storage": index}} for index, shelf in enumerate(scene["storages"]) if shelf["agent"] == "robot"}
+    robots = lambda step: [at.get(name) or shelves[name.removeprefix("take ")] for name in step["presses"]] if step["kind"] == "robot" else []
+    frames = lambda step: [at[name] if name in at else {"area": name} for name in step.get("point_at", [])] + robots(step)
+    middle = lambda spot: [spot["area"][0] + spot["area"][2] / 2, spot["area"][1] + spot["area"][3] / 2]
+    def moves(step):
+        spots = [scene["locations" if "location" in place else "storages"][next(iter(place.values()))] for place in (frame["place"] for frame in robots(step))]
+        return [{"to": middle(spot), "contents": ["empty"] * len(scene["locations"])} for spot in spots]
     hint = lambda step: {"button": step["presses"][0], "after_s": 0.0} if pressed(step) else None
     presses = lambda step: [0, len(step["presses"])] if pressed(step) else None
     order, dishes = next(at[name]["place"]["location"] for name in at if name.startswith("order")), items_of(kitchen)
@@ -104,7 +110,7 @@ def tutorial_texts(scene, kitchen):
             return None
         return {"highlight": at[step["highlight"]]["place"]["location"]} if "highlight" in step else {"recipe": {"order": order, "dish": step["dish"], "items": dishes[step["dish"]]}}
     return {step["id"]: ({"title": step["title"], "text": step["text"], "frames": frames(step), "hint": hint(step), "presses": presses(step), "missed": pressed(step) or step["kind"] == "probe",
-                         "kind": step["kind"], "probe": PROBE if step["kind"] == "probe" else None,
+                         "kind": step["kind"], "robot": moves(step), "probe": PROBE if step["kind"] == "probe" else None,
                          "done": step["kind"] in ("text", "signal", "robot"), "explains_buttons": step["id"] == first}, signal(step)) for step in steps}
 
 
@@ -218,7 +224,7 @@ def states(scene, kitchen):
     for name, (form, answer) in forms().items():
         made["questionnaire" if name == "scale" else f"questionnaire: {name}"] = sight("questionnaire", question={**question, "form": form, "answer": answer})
     made["answered"] = sight("answered")
-    given = [{"text": f"The signals of this trial helped in part {number}.", "answer": str(number % 7 + 1)} for number in range(1, 13)]
+    given = [{"item": f"i{number}", "text": f"The signals of this trial helped in part {number}.", "answer": str(number % 7 + 1) if number != 5 else None} for number in range(1, 13)]
     made["answers"] = sight("questionnaire", question={**question, "item": None, "form": None, "given": given, "text": "Thank you. Are your answers as you meant them?"})
     for name, page in tutorial_pages(scene, dishes).items():
         made[f"tutorial: {name}"] = sight("tutorial", tutorial={**TUTORIAL_PAGE, "step": name, **page})

@@ -103,6 +103,7 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         time.sleep(1.5)
         page.screenshot(folder / "consent-held-1920.png")
         page.page.mouse.up()
+        page.wait_for("document.querySelector('.hint.asks').textContent === Stage.scene().words['consent short']")
         time.sleep(2)
         item("consent")
         # A gamepad that is unplugged while its button is down has let go.
@@ -201,6 +202,10 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         keyboard.press("0")
         item("cooking")
         pictures("scale")
+        # What cannot be chosen, and going on without an answer, is told.
+        for key, said in (("9", "nothing"), ("Enter", "tutorial first question")):
+            keyboard.press(key)
+            page.wait_for(f"document.querySelector('.why.says')?.textContent === Stage.scene().words['{said}']")
         keyboard.press("3")
         item("robots")
         click('[data-rate="2"]')
@@ -220,6 +225,14 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
             return !made.textContent.includes(" ") && range.getClientRects().length > 1;
         }).map((made) => made.textContent)""")
         assert not broken, broken
+        # Who left an item out sees that; a row goes back to its item, and "Next" from there to all answers.
+        assert page.ask("document.querySelector('.given .none').textContent === Stage.scene().words.skip")
+        click('[data-review="age"]')
+        item("age")
+        page.page.wait_for_timeout(400)
+        click('[data-does="next"]')
+        page.wait_for("!Stage.shown().question.item")
+        page.page.wait_for_timeout(400)
         keyboard.press("Enter")
         page.stage("answered")
         pictures("thanks")

@@ -17,7 +17,7 @@ from page import Page, browser, plain
 
 PORT = 20332
 # Presses of buttons that are not asked for.
-OTHERS = ("take nori", "take nori", "cooking_pot")
+OTHERS = ("take nori", "take shrimp", "cooking_pot")
 # Whether the reason is shown, stands above the card, and what of that which is marked it hides.
 REASON = """(() => {
     const made = document.querySelector(".why"), a = made.getBoundingClientRect(), layer = (one) => Number(getComputedStyle(one).zIndex);
@@ -76,7 +76,7 @@ def checks_what_is_missing(page, way, step, words):
 
 def checks_another_press(page, way, words, folder):
     """A press of a button that is not asked for says why it does nothing: once, at its place, above the card, beside what is marked."""
-    for button, said in (("take nori", "page tutorial another first"), ("cooking_pot", "page why both_empty")):
+    for button, said in (("take shrimp", "page tutorial another first"), ("cooking_pot", "page why both_empty")):
         if way != "gamepad":
             turn(page, way)
             page.wait_for(f"document.querySelector('.lesson .verdict.line').textContent === {json.dumps(words['page tutorial first press'])}")
@@ -99,7 +99,16 @@ def checks_a_press_too_many(page, way, words, folder):
 
 
 def checks_the_robot_moves(page):
-    """The robot's hand goes to what it takes, and lays it down."""
+    """The robot's hand goes to what it takes, and lays it down; nothing is asked of the participant, whose press says that it does nothing. The
+    card covers neither place, nor the hand there."""
+    assert page.ask("document.querySelectorAll('.hinted').length") == 0
+    framed = page.ask("""[...document.querySelectorAll(".framed")].map((made) => {
+        const a = made.getBoundingClientRect(), b = document.querySelector(".card").getBoundingClientRect();
+        return [made.className, a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom];
+    })""")
+    assert sorted(framed) == [["shelf robot framed", False], ["spot place framed", False]], framed
+    page.page.keyboard.press("u")
+    page.wait_for("document.querySelector('.why.says')")
     where = "document.querySelector('.robot-hand').dataset.x"
     before = page.ask(where)
     page.wait_for(f"{where} !== '{before}' && getComputedStyle(document.querySelector('.robot-hand')).visibility === 'visible'")

@@ -78,6 +78,8 @@ pub enum DisplayedAnswerForm {
 /// A questionnaire item with the participant's answer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayedAnswer {
+    /// Name of the item, to which a touch goes back.
+    pub item: String,
     pub text: String,
     /// The answer in words; `None` if the participant left the item out.
     pub answer: Option<String>,
@@ -118,7 +120,11 @@ pub(super) fn question(session: &Session) -> Option<DisplayedQuestionnaireItem> 
     let before = protocol.item.checked_sub(1).and_then(|before| questionnaire.items.get(before));
     let in_words = |index: usize| Some(questionnaire.form(index)?.words(protocol.given(index)?));
     let items = questionnaire.items.iter().enumerate().filter(|_| item.is_none());
-    let given = items.map(|(index, item)| DisplayedAnswer { text: item.text.clone(), answer: in_words(index) });
+    let given = items.map(|(index, item)| DisplayedAnswer {
+        item: item.id.clone(),
+        text: item.text.clone(),
+        answer: in_words(index),
+    });
     Some(DisplayedQuestionnaireItem {
         title: questionnaire.title.clone(),
         item: item.map(|item| item.id.clone()),

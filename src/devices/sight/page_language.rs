@@ -70,6 +70,11 @@ impl DisplayWords {
         }
     }
 
+    /// A name of the kitchen within a sentence: with its article, where the language's file has one.
+    pub fn in_sentence(&self, name: &str) -> String {
+        self.known(&format!("the {}", name.replace('_', " "))).unwrap_or_else(|| self.of_name(name))
+    }
+
     /// The text for exactly this name; `None` if the language has no such text.
     pub(super) fn known(&self, name: &str) -> Option<String> {
         self.words.get(name).cloned()

@@ -55,6 +55,7 @@ pub enum ProbePicture {
     Order(usize),
     Location(usize),
     Storage(usize),
+    Trash,
 }
 
 /// Text of a freeze probe question and of its choices.
@@ -226,6 +227,7 @@ fn press(kitchen: &Kitchen, words: &DisplayWords, name: &str) -> (String, Option
     let Some(button) = kitchen.button_named(Agent::Robot, name) else { return (words.of_name(name), None) };
     let action = kitchen.button(Agent::Robot, button).action;
     let picture = match spot(kitchen, Agent::Robot, action) {
+        _ if action == ButtonAction::Trash => ProbePicture::Trash,
         SceneElement::Storage(storage) => ProbePicture::Storage(storage),
         SceneElement::Location(location) => place_picture(kitchen, LocationId(location as u8)),
     };

@@ -47,6 +47,8 @@ pub struct DisplayScene {
     pub sound: bool,
     /// Whether the page speaks signals.
     pub voice: bool,
+    /// Whether the plan's tutorial is in another language than the page, since there is none in the page's.
+    pub foreign_tutorial: bool,
     pub pointer: bool,
 }
 
@@ -63,6 +65,8 @@ pub struct TagPicture {
 pub struct DisplayLocation {
     pub name: String,
     pub label: String,
+    /// The name within a sentence, with its article where the language has one.
+    pub said: String,
     /// Kind of the location: "order", "human_hand", "robot_hand" or "place".
     pub kind: &'static str,
     pub area: Rect,
@@ -113,6 +117,7 @@ pub fn scene(session: &Session) -> DisplayScene {
     let spot = |location: &tomcom_core::kitchen::Location| DisplayLocation {
         name: location.name.clone(),
         label: words.of_name(&location.name),
+        said: words.in_sentence(&location.name),
         kind: kind(location.kind),
         area: rect(location.display),
         look: location.look.clone(),
@@ -146,6 +151,7 @@ pub fn scene(session: &Session) -> DisplayScene {
         served: spec.display.served,
         sound: spec.display.sound,
         voice: spec.display.voice,
+        foreign_tutorial: session.foreign_tutorial().is_some(),
         pointer: has_pointer(spec),
     }
 }

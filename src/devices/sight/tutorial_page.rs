@@ -114,9 +114,9 @@ pub(super) fn tutorial(session: &Session) -> Option<DisplayedTutorial> {
     let frames = step.point_at.iter().filter_map(|name| TutorialTarget::named(kitchen, name));
     let are_shown = step.kind == TutorialStepKind::Recipes && !state.are_cards_hidden;
     let dishes = (0..kitchen.dishes.len()).filter(|_| are_shown);
-    let hint = state.wanted(step).map(|button| {
+    let hint = state.wanted().map(|button| {
         // After a wrong press, the page marks the required button at once.
-        let after_s = if state.is_missed(step) { 0.0 } else { step.hint_after_s(state.presses) };
+        let after_s = if state.is_missed() { 0.0 } else { step.hint_after_s(state.presses) };
         RequestedTutorialButton { button: button.clone(), after_s }
     });
     Some(DisplayedTutorial {
@@ -127,11 +127,11 @@ pub(super) fn tutorial(session: &Session) -> Option<DisplayedTutorial> {
         number: state.step + 1,
         of: tutorial.steps.len(),
         done: state.is_done(),
-        frames: frames.map(|target| frame(kitchen, target)).collect(),
+        frames: frames.map(|target| frame(kitchen, target)).chain(robot_spots(kitchen, step)).collect(),
         hint,
         presses: step.has_presses().then_some([state.presses, step.presses.len()]),
         explains_buttons: tutorial.has_first_presses(state.step),
-        missed: state.is_missed(step) || (step.kind == TutorialStepKind::Probe && state.wrong.is_some()),
+        missed: state.is_missed() || (step.kind == TutorialStepKind::Probe && state.wrong.is_some()),
         cards: dishes.map(|index| card(kitchen, DishId(index as u8))).collect(),
         seconds: step.seconds.filter(|_| step.is_timed() && are_shown),
         left_s: state.cards_left_s(step),
@@ -150,6 +150,15 @@ fn robot_presses(session: &Session, step: &TutorialStep, state: &TutorialState) 
         Some(ShownRobotPress { to: button_place(session, button), contents: contents.collect() })
     };
     buttons.scan(state.kitchen, show).collect()
+}
+
+/// Where the robot presses in a step that shows what it does: the places are framed as well.
+fn robot_spots(kitchen: &Kitchen, step: &TutorialStep) -> impl Iterator<Item = TutorialFrameTarget> {
+    let presses = step.presses.iter().filter(|_| step.kind == TutorialStepKind::Robot);
+    let buttons = presses.filter_map(|name| kitchen.button_named(Agent::Robot, name));
+    buttons
+        .map(|button| spot(kitchen, Agent::Robot, kitchen.button(Agent::Robot, button).action))
+        .map(TutorialFrameTarget::Place)
 }
 
 fn frame(kitchen: &Kitchen, target: TutorialTarget) -> TutorialFrameTarget {

@@ -127,9 +127,11 @@ fn answered(reply: ParticipantResponse, session: &Session, now: SessionTime) -> 
             answer(ProtocolEvent::ItemAnswered { item, answer: given }, session)
         }
         ParticipantResponse::Answer { item, answer: None } => answer(ProtocolEvent::ItemSkipped { item }, session),
-        // The page goes on from an item only once it is answered, and back only to the item before.
+        // The page goes on from an item only once it is answered, to all answers if each item has one; and only back to an
+        // item, the one before or one of all answers.
+        ParticipantResponse::Next if is_complete(session) => answer(ProtocolEvent::AnswersShown, session),
         ParticipantResponse::Next if is_answered(session) => session.next_item().and_then(|next| answer(next, session)),
-        ParticipantResponse::Back { item } if item_before(session) == Some(&item) => {
+        ParticipantResponse::Back { item } if is_before(session, &item) => {
             answer(ProtocolEvent::ItemShown { item }, session)
         }
         ParticipantResponse::Next | ParticipantResponse::Back { .. } => None,
@@ -229,10 +231,17 @@ fn is_answered(session: &Session) -> bool {
     session.protocol.as_ref().is_some_and(|protocol| protocol.given(protocol.item).is_some())
 }
 
-/// Name of the questionnaire item before the shown one.
-fn item_before(session: &Session) -> Option<&String> {
-    let (questionnaire, protocol) = (session.questionnaire()?, session.protocol.as_ref()?);
-    questionnaire.items.get(protocol.item.checked_sub(1)?).map(|item| &item.id)
+/// Whether every item of the questionnaire is answered or left out.
+fn is_complete(session: &Session) -> bool {
+    session.protocol.as_ref().is_some_and(|protocol| protocol.open_item().is_none())
+}
+
+/// Whether the questionnaire has this item before the shown one.
+fn is_before(session: &Session, item: &str) -> bool {
+    let shown = session.questionnaire().zip(session.protocol.as_ref());
+    shown.is_some_and(|(questionnaire, protocol)| {
+        questionnaire.items.iter().take(protocol.item).any(|before| before.id == item)
+    })
 }
 
 /// Session time of an instant shortly before `now`.

@@ -1,8 +1,9 @@
 //! The participant's tutorial: what its steps ask for, what the page is told meanwhile, and that it is no part of the trial.
 
 use tomcom::run::leaving::TutorialProgress;
-use tomcom_devices::sight::{DisplayStage, ShownContent, sight};
+use tomcom_devices::sight::{DisplayStage, ShownContent, scene, sight};
 use tomcom_session::plan::{PhaseSpec, Tutorial, TutorialStep, TutorialStepKind};
+use tomcom_session::preflight_checks::participant;
 use tomcom_session::protocol::StudyPhase;
 use tomcom_session::settings::ProbeSpec;
 use tomcom_session::tutorial::{TutorialEvent, TutorialPageTurner};
@@ -164,9 +165,64 @@ fn only_the_button_that_is_asked_for_moves_the_kitchen_on() {
     assert_eq!(lesson.press("take rice"), None);
     assert_ne!(sight(lesson.session()).contents, empty);
     // The page before and back again: the step begins anew.
-    let back = TutorialEvent::Shown { step: "robot".to_string(), by: BY_PARTICIPANT };
+    let back = TutorialEvent::Shown { step: "robot_says".to_string(), by: BY_PARTICIPANT };
     assert_eq!(lesson.tell(back), None);
     assert_eq!(sight(lesson.session()).contents, empty);
+}
+
+#[test]
+fn what_the_robot_shows_is_asked_of_nobody_and_framed_where_the_robot_does_it() {
+    let mut lesson = Lesson::new(&folder("tutorial_robot"));
+    lesson.turn_to("robot");
+    let page = sight(lesson.session()).tutorial.expect("a page");
+    assert_eq!(page.hint, None, "the participant has nori, too, and is not to take it");
+    let kitchen = lesson.session().kitchen.clone();
+    let shelf = kitchen.storages.iter().position(|shelf| shelf.agent == Agent::Robot && shelf.label == "nori");
+    let board = kitchen.location_named("assembly_board").expect("a location").index();
+    let spots = serde_json::json!([{"place": {"storage": shelf.expect("a shelf")}}, {"place": {"location": board}}]);
+    assert_eq!(serde_json::to_value(&page.frames).expect("JSON"), spots);
+}
+
+#[test]
+fn an_order_may_be_made_in_another_order_than_the_file_has_it() {
+    let mut lesson = Lesson::new(&folder("tutorial_any_order"));
+    lesson.turn_to("order");
+    let step = lesson.session().tutorial_step().expect("a step").0.clone();
+    let mut presses = 0;
+    let mut press = |lesson: &mut Lesson, button: &str, is_right: bool| {
+        assert_eq!(lesson.press(button), None);
+        presses += usize::from(is_right);
+        let page = sight(lesson.session()).tutorial.expect("a page");
+        assert_eq!((page.missed, page.presses), (!is_right, Some([presses, step.presses.len()])), "{button}");
+    };
+    // Shrimp is no part of it, and what the robot's nori would need the trash for is none either.
+    press(&mut lesson, "take shrimp", false);
+    for button in ["take nori", "assembly_board", "take salmon", "cutting_board", "cut", "cutting_board"] {
+        press(&mut lesson, button, true);
+    }
+    press(&mut lesson, "cooking_pot", false);
+    for button in ["assembly_board", "take rice", "cooking_pot", "cook", "cooking_pot", "assembly_board"] {
+        press(&mut lesson, button, true);
+    }
+    // The button that is marked is one that goes on from here.
+    while let Some(button) = lesson.session().tutorial_step().and_then(|(_, state)| state.wanted().cloned()) {
+        press(&mut lesson, &button, true);
+    }
+    assert!(sight(lesson.session()).tutorial.expect("a page").done);
+}
+
+#[test]
+fn a_tutorial_in_another_language_than_the_page_is_told_before_it_begins() {
+    for (language, is_told) in [("en", false), ("fr", true)] {
+        let mut files = files();
+        files.spec.display.language = language.to_string();
+        let spec = files.study().and_then(|study| study.tutorial_alone("P07")).expect("a tutorial");
+        let kitchen = Arc::new(files.kitchen.kitchen);
+        let engine = SessionEngine::new(kitchen.clone(), spec, 0, CostToGo::new(kitchen));
+        assert_eq!(scene(engine.session()).foreign_tutorial, is_told);
+        let checks = participant(engine.session(), at(0.0), "g", None);
+        assert_eq!(checks.iter().any(|check| check.name == "tutorial"), is_told, "{checks:?}");
+    }
 }
 
 #[test]

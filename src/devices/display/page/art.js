@@ -269,6 +269,7 @@ const Art = (() => {
       return svg(`<rect width="${rows.length}" height="${rows.length}" fill="#fff"/><path d="${cells.join("")}" fill="#000" shape-rendering="crispEdges"/>`, `0 0 ${rows.length} ${rows.length}`);
     },
     GRIPPER: svg(gripper),
+    TRASH: svg('<path d="M24 30 L31 92 H69 L76 30 Z" fill="#e0b6b1" stroke="#8a4a44" stroke-width="3" stroke-linejoin="round"/><path d="M16 28 H84 M40 26 V17 H60 V26 M40 42 L43 80 M60 42 L57 80" fill="none" stroke="#8a4a44" stroke-width="5" stroke-linecap="round" stroke-linejoin="round"/>'),
     /** A button of a gamepad; a standard one by where it is, another one by its number from 1. */
     pad(number, isStandard) {
       const dots = [[50, 80], [80, 50], [20, 50], [50, 20]], arms = { 12: "M36 36 V8 H64 V36 Z", 13: "M36 64 V92 H64 V64 Z", 14: "M36 36 H8 V64 H36 Z", 15: "M64 36 H92 V64 H64 Z" };

@@ -14,6 +14,8 @@
   let asked = 0;
   // Times of presses whose effect is not on the screen yet.
   const waiting = [];
+  // The seconds that a probe or the trial still has.
+  let left = () => 0;
 
   /** Name of the page, which it keeps when it is loaded again, so that it takes part again in its old role. */
   const page = (() => {
@@ -79,7 +81,8 @@
     const before = Stage.shown(), count = (one) => (one && one.presses[0] ? one.presses[0].number : 0);
     const isAnswer = before && count(sight) > count(before);
     const since = () => (trips.length && sight.clock !== "stands" ? Math.max(0, serverTime(performance.now()) - toldAt) / 1000 : 0);
-    Stage.show(sight, () => (left_s || 0) - since());
+    left = () => (left_s || 0) - since();
+    Stage.show(sight, () => left());
     const isNew = before && sight.cue !== null && sight.cue !== cue;
     cue = sight.cue;
     if (isNew) Stage.flash();
@@ -126,6 +129,9 @@
   function lose() {
     const old = socket;
     socket = null;
+    // Nobody knows now whether the time goes on: it stands until the program tells it anew.
+    const stood = left();
+    left = () => stood;
     asked = 0;
     waiting.length = 0;
     clearTimeout(pinger);

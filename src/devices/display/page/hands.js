@@ -37,6 +37,9 @@ const Hands = (() => {
     if (at - (last.get(button) ?? -Infinity) < BOUNCE_MS) return;
     last.set(button, at);
     tell(button, at);
+    // Where no button counts, the page says so.
+    const { stage, tutorial } = Stage.shown() || {};
+    if (stage !== "running" && !(tutorial && tutorial.presses)) Stage.sayNothing(true);
     // The program's answer usually arrives before this delay: then both are drawn in one frame, and the answer need not
     // wait for the next one.
     setTimeout(() => push(button), PUSHED_MS);
@@ -73,13 +76,14 @@ const Hands = (() => {
     // During a freeze probe, no button of the kitchen can be pressed.
     if (Stage.asks()) {
       if (Probe.press(event.key, isHeld)) event.preventDefault();
+      else if (!isHeld && event.key.length === 1) Stage.say("probe how");
       return;
     }
     const lesson = Stage.shown() && Stage.shown().tutorial;
     if (lesson && Tutorial.key(event.key, lesson, isHeld)) return event.preventDefault();
     const button = buttonOf(scene, event);
-    if (!button && lesson) return isHeld || Tutorial.refuse(event.key, lesson);
-    if (!button) return isHeld || event.key.length > 1 || Stage.sayNothing();
+    if (!button && lesson && (isHeld || Tutorial.refuse(event.key, lesson))) return undefined;
+    if (!button) return isHeld || event.key.length > 1 || Stage.sayNothing(false);
     event.preventDefault();
     Stage.useBadges("keys");
     learn(event, button);
@@ -87,7 +91,7 @@ const Hands = (() => {
   }
 
   function touched(event) {
-    const hit = event.target.closest("[data-button], [data-rate], [data-option], [data-typed], [data-does], [data-turn], [data-choose], [data-believe], [data-unknown], [data-sure]");
+    const hit = event.target.closest("[data-button], [data-rate], [data-option], [data-typed], [data-does], [data-review], [data-turn], [data-choose], [data-believe], [data-unknown], [data-sure]");
     if (!hit || event.button > 0) return;
     event.preventDefault();
     const question = Stage.shown() && Stage.shown().question;
@@ -119,10 +123,12 @@ const Hands = (() => {
         if (!isDown || before[number] || !scene) return;
         Stage.useBadges("pad", pad.mapping === "standard");
         if (Stage.asks()) return Probe.press(PAD[number], false);
-        const lesson = Stage.shown() && Stage.shown().tutorial;
+        const { tutorial: lesson, question } = Stage.shown() || {};
+        // Of a questionnaire, only the consent is a gamepad's, which is held.
+        if (question) return question.form?.kind === "consent" || Stage.say("nothing");
         if (lesson && PAD[number] && Tutorial.pad(PAD[number], lesson)) return;
         const button = scene.buttons.find(({ gamepad }) => gamepad === number);
-        if (!button) return lesson || Stage.sayNothing();
+        if (!button) return Stage.sayNothing(false);
         press(button.name, timeOf(pad.timestamp));
       });
       const wasDown = before.some(Boolean), isDown = now.some(Boolean);

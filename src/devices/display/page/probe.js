@@ -51,7 +51,10 @@ const Probe = (() => {
   function pictureOf(shows, { scene, contentOf }) {
     if (!shows) return `<span class="other">…</span>`;
     if (shows === "empty") return `<span class="nothing"></span>`;
-    if (shows.order !== undefined) return `<span class="order-sign">${Number(shows.order) + 1}</span>`;
+    if (shows === "trash") return Art.TRASH;
+    // The orders as they stand side by side, this one marked.
+    const orders = scene.locations.filter((spot) => spot.kind === "order").map((_, at) => `<i class="${at === shows.order ? "this" : ""}">${at === shows.order ? at + 1 : ""}</i>`);
+    if (shows.order !== undefined) return `<span class="order-sign">${orders.join("")}</span>`;
     if (shows.location !== undefined) {
       const { look, kind } = scene.locations[shows.location];
       return Art.place(kind === "place" ? look && look.shape : kind, 130);
@@ -98,11 +101,13 @@ const Probe = (() => {
     } else if (!probe.choices.length) {
       all.append(text("h1", "", words.probe), text("p", "says", words["probe text"]));
     } else {
+      // Orders stand as they do in the kitchen, not shuffled: their place is what they are known by.
+      const orderOf = ({ shows }) => shows?.order ?? scene.locations.length, choices = [...probe.choices].sort((a, b) => orderOf(a) - orderOf(b));
       const head = element("div", "asks"), title = element("div", "title");
       title.append(...late, text("p", "count", words["probe count"].replace("#", probe.question).replace("#", probe.of)), text("h2", "", probe.text));
       head.append(...(probe.about ? [subjectOf(probe.about, kit)] : []), title);
       const isCards = probe.choices.some(({ shows }) => shows && shows.recipe), list = element("div", isCards ? "choices cards" : "choices");
-      list.append(...probe.choices.map((choice) => choiceOf(choice, kit)));
+      list.append(...choices.map((choice) => choiceOf(choice, kit)));
       all.append(head, list, element("div", "row"), bar);
     }
     sheet.replaceChildren(all);

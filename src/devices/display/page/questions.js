@@ -4,15 +4,29 @@ const Questions = (() => {
   const SLIDER_END = 100;
   // Longest entry of a number that is kept, in signs, and most digits of a number: beyond them it is refused, not cut.
   const LONGEST_ENTRY = 24, MOST_DIGITS = 15;
-  // A touch within this time after another item appeared was meant for the item before it.
-  const SETTLES_MS = 350;
+  // A touch within this time after another item appeared was meant for the item before it. For so long a choice is seen before the next item comes.
+  const SETTLES_MS = 350, SEEN_MS = 300;
   // Answer to the present item that is typed or dragged but not sent yet; `isRefused`: somebody tried to go on with it.
   let draft = { item: null, value: null, isRefused: false };
-  let redraw = () => {}, tell = () => {}, shownItem = "", settled = 0;
+  let redraw = () => {}, tell = () => {}, shownItem = "", settled = 0, giving = 0, chosen = null;
 
   const pending = (question) => (draft.item === question.item ? draft.value : null);
   const keep = (question, value) => { draft = { item: question.item, value, isRefused: false }; };
-  const give = (question, answer) => tell({ kind: "answer", item: question.item, answer });
+  const give = (question, answer) => { forgo(); tell({ kind: "answer", item: question.item, answer }); };
+
+  /** What was marked a moment ago is not given. */
+  function forgo() {
+    clearTimeout(giving);
+    chosen = null;
+  }
+
+  /** Marks what was chosen, and gives it once that was seen; another choice meanwhile takes its place. */
+  function mark(question, answer, attribute) {
+    forgo();
+    document.querySelectorAll(`[${attribute}]`).forEach((made) => made.classList.toggle("chosen", made.getAttribute(attribute) === String(answer)));
+    chosen = () => give(question, answer);
+    giving = setTimeout(chosen, SEEN_MS);
+  }
 
   function draw(sheet, question, words, kit) {
     const { element, text } = kit;
@@ -32,9 +46,11 @@ const Questions = (() => {
     } else {
       card.append(text("p", "item", question.text));
       const given = element("ol", question.given.length > 6 ? "given small" : "given");
-      for (const { text: asked, answer } of question.given) {
-        const line = element("li", "");
-        line.append(text("span", "", asked), text("b", "", answer ?? "–"));
+      for (const { item, text: asked, answer } of question.given) {
+        const line = element("li", ""), row = element("button", "");
+        row.dataset.review = item;
+        row.append(text("span", "", asked), text("b", answer === null ? "none" : "", answer ?? words.skip));
+        line.append(row);
         given.append(line);
       }
       card.append(given);
@@ -108,7 +124,7 @@ const Questions = (() => {
       // Signs that belong to no whole number stay in the field, since without them "7,5" would be another number: 75.
       const isOther = value && !isWhole(value) && value !== "-", isEntered = draft.isRefused || value.length >= String(form.max).length;
       const range = `${form.min} – ${form.max} ${form.unit}`, isWrong = isOther || (value && isEntered && !isNumber(form, value));
-      const hint = text("p", isWrong ? "hint wrong" : "hint", isOther ? `${words["whole number"]} ${range}` : range);
+      const hint = text("p", isWrong ? "hint wrong" : "hint", isOther ? `${words["whole number"]} ${range}` : isWrong ? `${words["number range"]} ${range}` : range);
       if (isWrong) hint.setAttribute("role", "alert");
       return [entry, hint, pad];
     },
@@ -130,8 +146,9 @@ const Questions = (() => {
       const reading = element("div", "reading");
       for (const paragraph of agreed.split(/\n\s*\n/)) reading.append(text("p", "", paragraph));
       const button = element("button", "hold");
-      button.append(element("i", ""), text("span", "", words.consent));
+      button.append(element("i", ""), text("span", "", words.consent.replace("#", form.hold_s)));
       button.style.setProperty("--hold", `${form.hold_s}s`);
+      button.dataset.seconds = form.hold_s;
       button.addEventListener("pointerdown", (event) => {
         button.setPointerCapture(event.pointerId);
         hold("touch", true, form.hold_s);
@@ -139,7 +156,7 @@ const Questions = (() => {
       for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
         button.addEventListener(end, () => hold("touch", false));
       }
-      const hint = text("p", "hint", words["consent text"]), not = text("button", "declines", words.decline);
+      const hint = text("p", "hint asks", words["consent text"]), not = text("button", "declines", words.decline);
       not.addEventListener("click", () => { tell({ kind: "decline" }); hint.textContent = words.declined; });
       const row = element("div", "choosing", button);
       row.append(not);
@@ -177,8 +194,10 @@ const Questions = (() => {
   /** Goes on to the next item, with the typed answer or with the answer that was given before. */
   function next(question) {
     const typed = isTyped(question) ? pending(question) : null;
-    if (typed === null) return question.answer !== null && tell({ kind: "next" });
+    if (typed === null && question.answer === null) return chosen ? chosen() : Stage.say(isTyped(question) ? "first type" : "tutorial first question");
+    if (typed === null) return tell({ kind: "next" });
     const words = inOneLine(typed);
+    if (!words) return Stage.say("first type");
     const { kind, length } = question.form;
     if (kind === "text" && words && lengthOf(words) <= length) return give(question, words);
     if (kind === "number" && isNumber(question.form, words)) return give(question, Number(words));
@@ -186,13 +205,13 @@ const Questions = (() => {
     return redraw();
   }
 
-  const skip = (question) => { keep(question, null); give(question, null); };
-  const back = (question) => question.before && tell({ kind: "back", item: question.before });
+  const skip = (question) => { forgo(); keep(question, null); give(question, null); };
+  const back = (question) => { forgo(); return question.before && tell({ kind: "back", item: question.before }); };
 
   /** Of several options, one that stands alone takes the others back, and each other one takes it back. */
   function choose(question, id) {
     const { several, options } = question.form, before = question.answer ?? [];
-    if (!several) return give(question, id);
+    if (!several) return mark(question, id, "data-option");
     const isAlone = (one) => options.some((option) => option.id === one && option.alone);
     const left = before.includes(id) ? before : before.filter((one) => !isAlone(one) && !isAlone(id));
     return give(question, options.map((option) => option.id).filter((one) => left.includes(one) !== (one === id)));
@@ -212,7 +231,7 @@ const Questions = (() => {
   }
 
   // Input that holds the consent button, and the timer at whose end consent is given.
-  let holds = null, agrees = null;
+  let holds = null, agrees = null, heldFrom = 0;
 
   /**
    * The consent button is pressed or released, by touch, a key or a gamepad. Only an uninterrupted hold of the whole
@@ -223,6 +242,9 @@ const Questions = (() => {
     holds = isDown ? by : null;
     clearTimeout(agrees);
     tell({ kind: "hold", held: isDown });
+    const hint = document.querySelector(".hint.asks");
+    if (hint && isDown) [hint.textContent, heldFrom] = ["", performance.now()];
+    else if (hint && performance.now() - heldFrom < 1000 * hint.parentNode.querySelector(".hold").dataset.seconds) hint.textContent = Stage.scene().words["consent short"];
     if (isDown) agrees = setTimeout(() => tell({ kind: "consent" }), 1000 * seconds);
     document.querySelectorAll(".hold").forEach((button) => button.classList.toggle("held", isDown));
   }
@@ -246,12 +268,12 @@ const Questions = (() => {
     if (kind === "number" && [...name].length === 1) return type(question, name);
     if (kind === "number" && name === "Backspace" && (pending(question) ?? question.answer ?? "") !== "") return type(question, "⌫");
     if (question.item && (name === "Delete" || (digit === 0 && ["scale", "choice"].includes(kind)))) return skip(question);
-    if (kind === "scale" && digit !== null && digit <= form.points) return give(question, digit);
+    if (kind === "scale" && digit !== null && digit <= form.points) return mark(question, digit, "data-rate");
     if (kind === "choice" && digit !== null && digit <= form.options.length) return choose(question, form.options[digit - 1].id);
     if (["ArrowLeft", "Backspace"].includes(name)) return back(question);
     if (question.item && ["ArrowRight", "Enter"].includes(name)) return next(question);
     if (!question.item && name === "Enter") return tell({ kind: "confirm" });
-    return undefined;
+    return kind !== "text" && [...name].length === 1 ? Stage.say("nothing") : undefined;
   }
 
   /** Scrolls a text that is longer than its area. */
@@ -261,9 +283,10 @@ const Questions = (() => {
   }
 
   /** One of the buttons is touched. */
-  function touch({ rate, option, typed, does }, question) {
+  function touch({ rate, option, typed, does, review }, question) {
     if (performance.now() < settled) return;
-    if (rate) give(question, Number(rate));
+    if (rate) mark(question, Number(rate), "data-rate");
+    else if (review) tell({ kind: "back", item: review });
     else if (option) choose(question, option);
     else if (typed) type(question, typed);
     else if (does === "skip") skip(question);

@@ -3,7 +3,7 @@
 const Readiness = (() => {
   // As the console's check of the display has it.
   const SMALL_PX = [1280, 720], SLOW_MS = 30;
-  let took = null, made = null, words = {};
+  let took = null, made = null, scene = null, words = {}, isBoxes = false;
 
   const filled = (said, ...values) => values.reduce((text, value) => text.replace("#", value), said || "");
 
@@ -15,12 +15,29 @@ const Readiness = (() => {
     return part;
   }
 
+  /** Whether letters of the page's words look alike, as they do where they are boxes: the system has no font for them. */
+  function lacksFont() {
+    const said = [...Object.values(words), ...scene.locations.map(({ label }) => label)].join("");
+    const letters = [...new Set(said.match(/\p{L}/gu))].filter((letter) => letter > "\u02ff"), pen = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
+    [pen.canvas.width, pen.canvas.height, pen.font, pen.textBaseline] = [32, 32, `24px ${getComputedStyle(document.body).fontFamily}`, "top"];
+    const picture = (letter) => {
+      pen.clearRect(0, 0, 32, 32);
+      pen.fillText(letter, 2, 2);
+      return pen.getImageData(0, 0, 32, 32).data.join("");
+    };
+    // A sign that no font has is drawn as the box that stands for it.
+    const box = picture("\u{10fffd}");
+    return letters.slice(0, 40).some((letter) => picture(letter) === box);
+  }
+
   function draw() {
     if (!made) return;
     const [wide, high] = [window.innerWidth, window.innerHeight].map((length) => Math.round(length * devicePixelRatio));
     // Who holds an upright screen in the hand reads it from nearby.
     const isSmall = wide >= high && (wide < SMALL_PX[0] || high < SMALL_PX[1]);
     const lines = [line(filled(words[isSmall ? "ready screen small" : "ready screen"], wide, high), !isSmall)];
+    if (isBoxes) lines.push(line(words["ready font"], false));
+    if (scene.foreign_tutorial) lines.push(line(words["ready tutorial"], false));
     if (took !== null) lines.push(line(filled(words["ready delay"], Math.round(took)), took <= SLOW_MS));
     if (Sound.isOn()) lines.push(Sound.hasVoice() ? line(words["ready sound"], false, hear) : line(words["ready voice off"], false));
     if (document.fullscreenEnabled && !document.fullscreenElement) lines.push(line(words.fullscreen, false, () => document.documentElement.requestFullscreen().catch(() => {})));
@@ -36,8 +53,9 @@ const Readiness = (() => {
   }
 
   /** The list of what is ready, for a card. */
-  function build(page, element) {
-    words = page;
+  function build(kitchen, element) {
+    [scene, words] = [kitchen, kitchen.words];
+    isBoxes = lacksFont();
     made = element("p", "readiness");
     draw();
     return made;

@@ -1,8 +1,6 @@
 "use strict";
 /** The line that says why a press had no effect: at its place, until the next press or for a moment. */
 const Reason = (() => {
-  // Around what is marked stands a frame; it is so wide, in heights of the line.
-  const FRAME = 0.35;
   let made = null;
 
   function build(element) {
@@ -13,50 +11,67 @@ const Reason = (() => {
 
   /** Why a press has no effect; in the tutorial also, where it would have one in the task, that another step comes first. */
   function wordsOf({ why }, tutorial, { words, locations }) {
-    const known = why ? (words[`why ${why.reason}`] || "").replace("#", locations[why.about].label) : "";
-    return known || (tutorial?.missed ? words["tutorial another first"] : "");
+    const known = why ? (words[`why ${why.reason}`] || "").replace("#", locations[why.about].said) : "";
+    if (known) return known[0].toUpperCase() + known.slice(1);
+    return tutorial?.missed ? words["tutorial another first"] : "";
   }
 
-  /** The left end of a line that is so wide, within the screen. */
-  const inside = (left, wide) => Math.min(0.994 - wide, Math.max(0.006, left));
+  // What is needed next: whatever is pressed, read or held. The line hides none of it, if there is room.
+  const NEEDED = ".pill, .spot .furniture, .dock, .shelf, .spot.order, .key, .recipe.open, .gripper, .tag, .flash, .sheet.open button, .sheet.open p, .sheet.open h1, .sheet.open h2, .lesson";
+  // What is better seen, too, but not at any distance.
+  const NAMES = ".name, .zone h2, .status span";
+  // Air around the line, and beside what a tutorial marks with a frame, in heights of the line; how far it is moved up or down in one try, and how many tries to each side.
+  const AIR = 0.08, MARK = 0.4, STEP = 0.3, ASIDE = 6;
+  // What hiding a share of the stage costs, and what it costs to be its height away.
+  const HIDES = 1000, HIDES_NAME = 100;
 
-  /** The usual area of the line; where it would hide what is marked, another one at the same place or beside what is marked. */
-  function besides(marked, stage, usual, heights) {
-    if (!marked) return usual;
-    const box = marked.getBoundingClientRect(), [left, , wide, line] = usual, air = FRAME * line;
-    const [from, to] = [box.left, box.right].map((x) => (x - stage.left) / stage.width), [above, under] = [box.top, box.bottom].map((y) => (y - stage.top) / stage.height);
-    const across = (air * stage.height) / stage.width, isFree = ([x, y]) => x > to + across || x + wide < from - across || y > under + air || y + line < above - air;
-    const lefts = [left, inside(from - 1.1 * across - wide, wide), inside(to + 1.1 * across, wide)];
-    const tries = lefts.flatMap((x) => [usual[1], ...heights].map((y) => [x, y, wide, line]));
-    return tries.find((rect) => rect[1] > 0 && rect[1] + line < 1 && isFree(rect)) || usual;
+  /** The areas of what is seen of these on the stage, in fractions of it. */
+  function obstacles(names, stage, [wide, high], line) {
+    const area = (made) => {
+      const box = made.getBoundingClientRect(), air = (made.matches(".hinted") ? MARK : AIR) * line, across = (air * high) / wide;
+      const [x, y] = [(box.left - stage.left) / stage.width, (box.top - stage.top) / stage.height];
+      return [x - across, y - air, x + box.width / stage.width + across, y + box.height / stage.height + air];
+    };
+    return [...document.querySelectorAll(names)].filter((made) => made.checkVisibility({ visibilityProperty: true, opacityProperty: true })).map(area);
   }
 
-  /**
-   * Shows the line at a place, below it. Where the name of the next place or the end of the screen is below, it covers
-   * the lower part of the place itself; so it does on an upright screen, where everything is close together. What the
-   * tutorial has marked stays free.
-   */
-  function draw(said, { place, isInside, marked }, kitchen, { room, text, put, replay }) {
+  /** The area for a line of this size that is nearest to a point and hides nothing; else the one that hides least. */
+  function nearest([x, y], [wide, line], needed, names) {
+    const hidden = (areas, [left, top]) => areas.reduce((sum, [l, t, r, b]) => sum + Math.max(0, Math.min(r, left + wide) - Math.max(l, left)) * Math.max(0, Math.min(b, top + line) - Math.max(t, top)), 0);
+    let best = null, least = Infinity;
+    const far = Math.ceil(1 / (STEP * line));
+    for (let down = -far; down <= far; down += 1) for (let across = -ASIDE; across <= ASIDE; across += 1) {
+      const top = y - line / 2 + down * STEP * line, left = Math.min(0.994 - wide, Math.max(0.006, x - wide / 2 + (across * wide) / (2 * ASIDE)));
+      if (top < 0.006 || top + line > 0.994) continue;
+      // Hiding something is worse than any distance.
+      const covers = hidden(needed, [left, top]), cost = (covers ? 10 + HIDES * covers : 0) + HIDES_NAME * hidden(names, [left, top]) + Math.abs(top + line / 2 - y) + 0.5 * Math.abs(left + wide / 2 - x);
+      if (cost < least) [best, least] = [[left, top, wide, line], cost];
+    }
+    return best;
+  }
+
+  /** Shows a line near a point of the stage. */
+  function place(said, at, root, { room, text, put, replay }) {
     made.replaceChildren(text("span", "", said));
     if (!said) return hide();
-    const [box, stage] = [place.getBoundingClientRect(), kitchen.getBoundingClientRect()];
     // Its words are smaller where the stage is narrower than the line.
-    const [em, line] = [room.em[0], 2.8 * room.em[1]], most = 0.988, natural = room.widthOf(said, 1.6 * em) + 3 * em, wide = Math.min(most, natural);
-    const middle = (box.left + box.width / 2 - stage.left) / stage.width, [high, low] = [box.top, box.bottom].map((y) => (y - stage.top) / stage.height);
+    const [em, line] = [room.em[0], 2.8 * room.em[1]], natural = room.widthOf(said, 1.6 * em) + 3 * em, wide = Math.min(0.988, natural);
     made.style.setProperty("--words", (wide - 3 * em) / (natural - 3 * em));
-    const left = inside(middle - wide / 2, wide), inner = low - line, below = low + 0.1 * line, usual = isInside || low > 0.9 ? inner : below;
-    put(made, besides(marked, stage, [left, usual, wide, line], [below, inner, high - 1.1 * line, high]));
+    const stage = root.getBoundingClientRect();
+    put(made, nearest(at(stage), [wide, line], ...[NEEDED, NAMES].map((names) => obstacles(names, stage, [stage.width, stage.height], line))));
     return replay(made, "says");
   }
 
-  /** Says something that is about no place, in the middle below. */
-  function say(said, kitchen, { room, put, replay, text }) {
-    const wide = Math.min(0.9, room.widthOf(said, 1.6 * room.em[0]) + 3 * room.em[0]);
-    made.replaceChildren(text("span", "", said));
-    made.style.setProperty("--words", 1);
-    put(made, [0.5 - wide / 2, 0.94, wide, 2.8 * room.em[1]]);
-    replay(made, "says");
+  /** Shows the line at what was pressed, as near as it can stand without hiding what is needed next. */
+  function draw(said, pressed, root, kit) {
+    place(said, (stage) => {
+      const { left, top, width, height } = pressed.getBoundingClientRect();
+      return [(left + width / 2 - stage.left) / stage.width, (top + height / 2 - stage.top) / stage.height];
+    }, root, kit);
   }
+
+  /** Says something that is about no place, in the middle below. */
+  const say = (said, root, kit) => place(said, () => [0.5, 0.965], root, kit);
 
   const hide = () => made.classList.remove("says");
 

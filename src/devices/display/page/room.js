@@ -35,12 +35,15 @@ const Room = (scene, fontFamily) => {
     return [x + w / 2 - wide / 2, y - NAME, wide, NAME];
   };
 
-  /** Size of a place's name, so that no name overlaps another one or leaves the stage. */
+  /** Size of a place's name, so that no name overlaps another one or leaves its zone; if it would be too small for that, the stage. */
   function nameSize(spot) {
     const obstacles = [...scene.tags.map(({ area }) => area), ...named.filter((other) => other !== spot).map((other) => nameArea(other, NAME_SIZE))];
-    for (let size = NAME_SIZE; size > 0.005; size -= 0.0005) {
-      const area = nameArea(spot, size);
-      if (area[0] >= 0.004 && area[0] + area[2] <= 0.996 && !obstacles.some((other) => overlaps(area, other))) return size;
+    const [zone, , wide] = [...sides(), table()].find((one) => overlaps(one, spot.area)) || [0, 0, 1];
+    for (const [from, to, least] of [[zone + 0.004, zone + wide - 0.004, 0.8 * LEAST_SIZE], [0.004, 0.996, 0.005]]) {
+      for (let size = NAME_SIZE; size > least; size -= 0.0005) {
+        const area = nameArea(spot, size);
+        if (area[0] >= from && area[0] + area[2] <= to && !obstacles.some((other) => overlaps(area, other))) return size;
+      }
     }
     return LEAST_SIZE / 2;
   }
@@ -60,7 +63,13 @@ const Room = (scene, fontFamily) => {
     return both.map(([x, , w], human) => grown([x, top, w, bottom - top], [human ? 0.045 : 0.022, 0.085, human ? 0.022 : 0.045, 0.035]));
   }
 
-  const table = () => grown(around(areas("place")), [0.03, 0.085, 0.03, 0.03]);
+  /** The area of the places between the two, as wide as their names need, as far as the sides leave room. */
+  function table() {
+    const [x, , w] = around(areas("place")), names = around(scene.locations.filter(({ kind }) => kind === "place").map((spot) => nameArea(spot, NAME_SIZE)));
+    const [robots, humans] = sides(), room = [x - robots[0] - robots[2], humans[0] - x - w].map((wide) => (wide > 0.036 ? wide - 0.006 : 0.03));
+    const [left, right] = [x - names[0], names[0] + names[2] - x - w].map((over, side) => Math.min(room[side], Math.max(0.03, over + 0.006)));
+    return grown(around(areas("place")), [left, 0.085, right, 0.03]);
+  }
 
   /** Where the robot's arm comes from: the edge of its side that is nearest to the viewer. */
   function base() {
@@ -122,11 +131,13 @@ const Room = (scene, fontFamily) => {
 
   /**
    * Area of a recipe that covers nothing of the kitchen: the largest free rectangle, or one that is large enough and
-   * near its order. At most so wide and high.
+   * near its order. At most so wide and high; `isClear`: not over the robot's side either, if there is room enough elsewhere.
    */
-  function forRecipe(others, order, most = [0.24, 0.5]) {
-    // A line is a picture with words beside it. A larger line height than `enough` does not improve reading.
-    const margin = 0.012, lines = 4.4, line = 5.2, enough = 0.08;
+  function forRecipe(others, order, { most = [0.24, 0.5], isClear = false } = {}) {
+    // A line is a picture with words beside it. A larger line height than `enough` does not improve reading, one of `least` is readable.
+    const margin = 0.012, lines = 4.4, line = 5.2, enough = 0.08, least = 0.06;
+    const clear = isClear && forRecipe([...others, sides()[0]], order, { most });
+    if (clear && Math.min(clear[3] / lines, (clear[2] * ratio) / line) >= least) return clear;
     const walls = others.map((rect) => grown(rect, [margin, margin * ratio, margin, margin * ratio]));
     const lefts = [margin, ...walls.map(([x, , w]) => x + w)], rights = [1 - margin, ...walls.map(([x]) => x)];
     const aim = order ? order[0] + order[2] / 2 : 0.5;
@@ -156,11 +167,13 @@ const Room = (scene, fontFamily) => {
    * Where a page of the tutorial can stand: where most room is, beside the recipe that it explains; or else over the robot's side, unless
    * the page is about it.
    */
-  function forLesson(others, recipe, frames) {
-    const all = recipe ? [...others, recipe] : others, [robots] = sides(), tags = scene.tags.map(({ area }) => area);
-    const beside = forRecipe(all, undefined, LESSON);
-    if (frames.some(isRobots)) return [beside];
-    return [beside, forRecipe(all.filter((rect) => tags.includes(rect) || !overlaps(rect, robots)), undefined, LESSON)];
+  function forLesson(others, recipe, { kind, frames }) {
+    const all = recipe ? [...others, recipe] : others, [robots, humans] = sides(), tags = scene.tags.map(({ area }) => area);
+    const over = (side, also = []) => forRecipe([...all.filter((rect) => tags.includes(rect) || !overlaps(rect, side)), ...also], undefined, { most: LESSON });
+    const beside = forRecipe(all, undefined, { most: LESSON });
+    // What the robot does is watched: the page stands on the other side.
+    if (kind === "robot") return [forRecipe([...all, robots], undefined, { most: LESSON }), over(humans, [robots])];
+    return frames.some(isRobots) ? [beside] : [beside, over(robots)];
   }
 
   return {

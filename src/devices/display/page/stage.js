@@ -180,19 +180,22 @@ const Stage = (() => {
     const others = room.taken();
     const pills = buildPills(others);
     const tally = room.forStatus(others), all = [...others, tally];
-    // A recipe opens near its order; the instruction opens in the largest free area.
-    const free = room.forRecipe(all), cards = scene.locations.map(({ kind, area }) => (kind === "order" ? room.forRecipe(all, area) : free));
+    // A recipe opens near its order, beside the robot's side if that is drawn; the instruction opens in the largest free area.
+    const free = room.forRecipe(all, undefined, { isClear: scene.arm !== "none" });
+    const cards = scene.locations.map(({ kind, area }) => (kind === "order" ? room.forRecipe(all, area, { isClear: scene.arm !== "none" }) : free));
     const recipe = put(element("div", "recipe"), free);
     const robot = Robot.build(told, room, { taken: all, cards }, element);
-    kitchen.append(...robot, ...locations.map((l) => l.made), ...storages.map((s) => s.made), ...pills, recipe, Reason.build(element));
+    kitchen.append(...robot, ...locations.map((l) => l.made), ...storages.map((s) => s.made), ...pills, recipe);
     const sheet = element("div", "sheet"), toast = element("div", "toast"), status = put(Status.build(element), tally), target = element("div", "target", "<i></i>");
-    root.append(kitchen, status, sheet, toast, target, ...scene.tags.map((tag) => put(element("div", "tag", Art.tag(tag.rows)), tag.area)));
+    const reach = element("div", "reach", Art.place("human_hand", 100));
+    kitchen.append(reach);
+    root.append(kitchen, status, sheet, Reason.build(element), toast, target, ...scene.tags.map((tag) => put(element("div", "tag", Art.tag(tag.rows)), tag.area)));
     const flash = element("div", "flash");
     if (scene.flash) {
       const tag = scene.tags[2] ? scene.tags[2].area : [0.99, 0.98, 0, 0];
       root.append(put(flash, [tag[0] - 0.033, 1 - 0.0267 * Number(scene.display_m[0] / scene.display_m[1]) * 0.9375 - 0.004, 0.025, 0.025 * (scene.display_m[0] / scene.display_m[1])]));
     }
-    parts = { kitchen, robots, locations, storages, recipe, sheet, toast, flash, target, free, cards, all };
+    parts = { kitchen, reach, robots, locations, storages, recipe, sheet, toast, flash, target, free, cards, all };
     mark({});
   }
 
@@ -245,21 +248,19 @@ const Stage = (() => {
         replay(made, "shakes");
         Sound.play("effectless");
       }
-      drawReason(now, made, { tutorial });
+      Reason.draw(Reason.wordsOf(now, tutorial, scene), made, root, { room, text, put, replay });
     });
-  }
-
-  /** Says why a press had no effect, beside what the tutorial has marked. */
-  function drawReason(press, made, { tutorial }) {
-    const marked = tutorial?.hint && Tutorial.buttonOf(tutorial.hint.button), isInside = room.isUpright || "storage" in press.at;
-    Reason.draw(Reason.wordsOf(press, tutorial, scene), { place: made, isInside, marked }, parts.kitchen, { room, text, put, replay });
   }
 
   function drawSignal(signal, contents) {
+    // A signal about the robot's hand is at the hand, wherever that is.
+    const isDrawn = ({ kind }) => kind === "robot_hand" && scene.arm !== "none";
+    const hand = scene.locations.findIndex(isDrawn), highlight = signal ? signal.highlight : undefined;
     parts.locations.forEach(({ made }, index) => {
-      made.classList.toggle("highlight", Boolean(signal && signal.highlight === index));
+      made.classList.toggle("highlight", highlight === index && index !== hand);
       made.classList.toggle("asked", Boolean(signal && signal.recipe && signal.recipe.order === index));
     });
+    Robot.highlight(hand >= 0 && highlight === hand);
     const recipe = signal && signal.recipe, next = signal && signal.next;
     parts.recipe.classList.toggle("open", Boolean(recipe || next));
     parts.recipe.classList.toggle("proposal", Boolean(next));
@@ -318,7 +319,14 @@ const Stage = (() => {
   }
 
   /** The robot's side says what the robot does if it does not simply work; a stop is seen at a glance. */
-  function drawRobot(does) {
+  function drawRobot({ robot_does: does, presses: [press] }) {
+    // Where the robot takes the hand to be that it is careful of: at its last press.
+    const isNear = ["slow", "waits_hand"].includes(does) && press;
+    parts.reach.classList.toggle("open", Boolean(isNear));
+    if (isNear) {
+      const spot = "storage" in press.at ? scene.storages[press.at.storage] : scene.locations[press.at.location], [wide, high] = room.em;
+      put(parts.reach, [spot.area[0] - 1.2 * wide, spot.area[1] + spot.area[3] - 2.6 * high, 3.4 * wide, 3.4 * high]);
+    }
     if (root.dataset.robot === (does || "") && shown) return;
     root.dataset.robot = does || "";
     parts.robots.querySelector("h2").textContent = does ? scene.words[`robot ${does.replace("_", " ")}`] : scene.words.robot;
@@ -339,11 +347,11 @@ const Stage = (() => {
     root.dataset.stage = stage;
     // The reason of an ineffective press is removed when the phase of the trial changes.
     if (shown && shown.stage !== stage) Reason.hide();
-    const name = stage === "ready" && practice ? "practice" : stage.replace("_", " ");
+    const name = practice && stage === "ready" ? "practice" : practice && stage === "over" ? "practice over" : stage.replace("_", " ");
     parts.sheet.className = `sheet ${stage === "running" ? "" : "open"} ${BIG.includes(stage) ? "big" : ""} ${stage}`;
     if (stage === "questionnaire" && sight.question) return Questions.draw(parts.sheet, sight.question, scene.words, { element, text });
     if (sight.tutorial) {
-      const recipe = sight.signal && sight.signal.recipe, areas = room.forLesson(parts.all, recipe && parts.cards[recipe.order], sight.tutorial.frames);
+      const recipe = sight.signal && sight.signal.recipe, areas = room.forLesson([...parts.all, ...Robot.areas(sight.tutorial)], recipe && parts.cards[recipe.order], sight.tutorial);
       return Tutorial.draw(parts.sheet, sight.tutorial, { scene, areas, enough: room.enough, badges: badges(), element, text, put, partOf, fitWords, contentOf, draws: drawContents, contents: sight.contents });
     }
     Tutorial.end();
@@ -351,7 +359,7 @@ const Stage = (() => {
     Probe.end();
     const card = element("div", "card");
     card.append(text("h1", "", scene.words[name] || ""), text("p", "", scene.words[`${name} text`] || ""));
-    if (["welcome", "ready"].includes(stage)) card.append(Readiness.build(scene.words, element));
+    if (["welcome", "ready"].includes(stage)) card.append(Readiness.build(scene, element));
     // The kitchen is explained during the instruction, so nothing covers it.
     if (stage === "instruction") put(card, parts.free);
     parts.sheet.replaceChildren(card);
@@ -399,7 +407,7 @@ const Stage = (() => {
     drawContents(sight.contents);
     drawPresses(sight);
     drawIntention(sight.intention);
-    drawRobot(sight.robot_does);
+    drawRobot(sight);
     if (!shown || JSON.stringify(shown.signal) !== JSON.stringify(sight.signal)) drawSignal(sight.signal, sight.contents);
     if (!shown || JSON.stringify(onSheet(shown)) !== JSON.stringify(onSheet(sight))) drawSheet(sight, left);
     drawTarget(sight);
@@ -423,15 +431,20 @@ const Stage = (() => {
     parts.toast.className = `toast ${isLost ? "open says-lost" : parts.toast.textContent ? "open" : ""}`;
   }
 
-  /** What was pressed does nothing, in a trial. */
-  function sayNothing() {
-    if (!shown || shown.stage !== "running" || !marks.acts) return;
-    Reason.say(scene.words.nothing, parts.kitchen, { room, put, replay, text });
+  /** Says something that is about no place. */
+  function say(name) {
+    if (shown && marks.acts) Reason.say(scene.words[name], root, { room, put, replay, text });
+  }
+
+  /** What was pressed does nothing, or, where it is one of the kitchen's buttons, nothing yet. */
+  function sayNothing(isButton) {
+    const stage = shown && shown.stage;
+    say(isButton && ["welcome", "instruction", "ready"].includes(stage) ? "nothing yet" : isButton && stage === "paused" ? "paused text" : "nothing");
   }
 
   /** A press without a connection has no effect, and the page says so once more. */
   function refuse() {
-    if (parts) replay(parts.toast, "shakes");
+    if (parts) replay(parts.toast, "refuses");
     Sound.play("effectless");
   }
 
@@ -478,5 +491,5 @@ const Stage = (() => {
     return [(x - box.left) / box.width, (y - box.top) / box.height];
   }
 
-  return { build, show, resize, flash, mark, refuse, sayNothing, label, useBadges, greet, askCode, point, isUpright, scene: () => scene, shown: () => shown, asks: () => Boolean(shown && shown.probe) || Tutorial.practises() };
+  return { build, show, resize, flash, mark, refuse, say, sayNothing, label, useBadges, greet, askCode, point, isUpright, scene: () => scene, shown: () => shown, asks: () => Boolean(shown && shown.probe) || Tutorial.practises() };
 })();

@@ -27,7 +27,7 @@ const Status = (() => {
     };
     tick();
     if (clock === "goes") timer = setInterval(tick, TICK_MS);
-    parts.served.textContent = served ? `✓ ${served}` : "";
+    parts.served.textContent = served === null ? "" : `✓ ${served}`;
   }
 
   return { build, draw };

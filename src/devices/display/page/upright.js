@@ -9,6 +9,8 @@ const Upright = (wall, fontFamily, ratio) => {
   const NAME = 1.9, WORDS = 1.45, TOUCH = [6.2, 8.4], TEXTS = 15;
   // Width and height of what the robot has, room below what is touched, height of the title of the robot's side.
   const SMALL = 4.8, INNER = 0.7, TITLE = 2.2;
+  // Where there is height left: more of it for texts, then room below what the robot has, where its hand stands as large as at a place.
+  const MORE = 5, STAND = 4.8;
   // Where keys are not shown, the buttons of several orders are told apart by their numbers.
   const served = wall.locations.flatMap(({ kind }, index) => (kind === "order" ? [index] : []));
   const numbered = (knob) => (knob.does === "serve" && served.length > 1 ? { ...knob, label: `${knob.label} ${served.indexOf(knob.at) + 1}` } : knob);
@@ -24,7 +26,7 @@ const Upright = (wall, fontFamily, ratio) => {
   const touched = 2 + rows.places.length + rows.mine.length, named = touched - 1;
   const fixed = 2 * EDGE + 3 * BETWEEN + named * (NAME + INNER) + 3 * INNER + TITLE + rows.theirs.length * (NAME + SMALL + INNER) + TEXTS;
   const touch = Math.min(TOUCH[1], Math.max(TOUCH[0], (high - fixed) / touched));
-  const texts = Math.max(TEXTS, high - (fixed - TEXTS) - touched * touch);
+  const spare = Math.max(0, high - fixed - touched * touch), stand = Math.min(STAND, Math.max(0, spare - MORE)), texts = TEXTS + spare - stand;
 
   const areas = { locations: [], storages: [], knobs: new Map(), limits: new Map() };
   const rect = (x, y, w, h) => [x / WIDE, y / high, w / WIDE, h / high];
@@ -57,7 +59,7 @@ const Upright = (wall, fontFamily, ratio) => {
       });
       y += NAME + SMALL + INNER;
     }
-    return y;
+    return y + stand;
   }
 
   /** Places in two columns, as on the wall: the buttons of a place stand beside it. */
@@ -123,7 +125,7 @@ const Upright = (wall, fontFamily, ratio) => {
   }
 
   /** Where a text of the tutorial stands: below the orders, unless a recipe is open there. Only a text that has no room there hides the robot's side, and never if it is about it. */
-  function forLesson(_, recipe, frames) {
+  function forLesson(_, recipe, { frames }) {
     if (recipe) return [zones.places];
     if (frames.some(across.isRobots)) return frames.some(({ place }) => place && !across.isRobots({ place })) ? [free] : [free, zones.places];
     return [free, [free[0], free[1], free[2], zones.theirs[1] + zones.theirs[3] - free[1]]];

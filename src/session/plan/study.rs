@@ -250,7 +250,7 @@ fn what_can_change_a_trial(session: &SessionSpec) -> BTreeMap<String, Value> {
     let default = toml::from_str(r#"layout = """#).map(|spec| by_path(&spec)).unwrap_or_default();
     let is_off = |value: &Value| matches!(value, Value::Null | Value::Bool(false));
     let mut values = by_path(session);
-    values.retain(|path, value| !is_off(value) || default.get(path) != Some(value));
+    values.retain(|path, value| !is_off(value) || default.get(path) != Some(&*value));
     values
 }
 

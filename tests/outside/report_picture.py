@@ -15,7 +15,7 @@ parser.add_argument("folder", type=Path)
 parser.add_argument("--out", type=Path, default=Path("tests/snapshots/report.png"))
 arguments = parser.parse_args()
 recordings = arguments.folder / "recordings"
-run(arguments.tomcom, "simulate", "sessions/paper.toml", "--arm", "timed", "--trials", 28, "--out", recordings)
+run(arguments.tomcom, "simulate", "sessions/paper.toml", "--arm", "timed", "--trials", 8, "--out", recordings)
 run(arguments.tomcom, "study", recordings, "--skip", "concepts")
 page = (recordings / "study" / "report.html").resolve().as_uri()
 browser = ["chromium", "--headless", "--no-sandbox", "--hide-scrollbars", "--window-size=1000,1300"]

@@ -106,20 +106,21 @@ class Recording:
                 if event["seq"] >= before["events"]:
                     break
                 yield event
-        wanted = [f'"kind":"{kind}"'.encode() for kind in kinds]
+        wanted = [f'"{kind}"'.encode() for kind in kinds]
         with open(self.path / "events.jsonl", "rb") as lines:
             next(lines)
             for number, line in enumerate(lines, start=2):
                 # Samples are most of a log: what is not asked for is not parsed.
-                head = line[:100]
-                if wanted and not any(kind in head for kind in wanted):
+                if wanted and not any(kind in line for kind in wanted):
                     continue
                 if not line.endswith(b"\n"):
                     return  # a recording that was cut can end in the middle of a line
                 try:
-                    yield json.loads(line)
+                    event = json.loads(line)
                 except ValueError as error:
                     raise ValueError(f"{self.path / 'events.jsonl'}:{number}: {error}") from error
+                if not kinds or event["kind"] in kinds:
+                    yield event
 
     @cached_property
     def _clock(self) -> tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray]:

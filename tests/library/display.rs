@@ -476,7 +476,9 @@ fn a_reason_is_a_sentence_that_begins_with_the_place() {
         for language in ["de", "es", "fr", "it"] {
             let spec = DisplaySpec { language: language.to_string(), ..DisplaySpec::default() };
             let words = DisplayWords::for_display(&spec);
-            for place in kitchen.locations.iter().filter(|place| place.kind == LocationKind::Place) {
+            for place in
+                kitchen.locations.iter().filter(|place| place.kind == tomcom_core::kitchen::LocationKind::Place)
+            {
                 let said = words.in_sentence(&place.name);
                 assert_ne!(said, words.of_name(&place.name), "{language}: without an article");
                 assert!(said.starts_with(char::is_uppercase), "{language}: {said}");

@@ -154,10 +154,10 @@ fn robot_presses(session: &Session, step: &TutorialStep, state: &TutorialState) 
 
 /// Where the robot presses in a step that shows what it does: the places are framed as well.
 fn robot_spots(kitchen: &Kitchen, step: &TutorialStep) -> impl Iterator<Item = TutorialFrameTarget> {
-    let presses = step.presses.iter().filter(|_| step.kind == TutorialStepKind::Robot);
-    let buttons = presses.filter_map(|name| kitchen.button_named(Agent::Robot, name));
+    let presses = step.presses.iter().filter(move |_| step.kind == TutorialStepKind::Robot);
+    let buttons = presses.filter_map(move |name| kitchen.button_named(Agent::Robot, name));
     buttons
-        .map(|button| spot(kitchen, Agent::Robot, kitchen.button(Agent::Robot, button).action))
+        .map(move |button| spot(kitchen, Agent::Robot, kitchen.button(Agent::Robot, button).action))
         .map(TutorialFrameTarget::Place)
 }
 

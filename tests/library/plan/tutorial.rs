@@ -177,7 +177,10 @@ fn what_the_robot_shows_is_asked_of_nobody_and_framed_where_the_robot_does_it() 
     let page = sight(lesson.session()).tutorial.expect("a page");
     assert_eq!(page.hint, None, "the participant has nori, too, and is not to take it");
     let kitchen = lesson.session().kitchen.clone();
-    let shelf = kitchen.storages.iter().position(|shelf| shelf.agent == Agent::Robot && shelf.label == "nori");
+    let shelf = kitchen
+        .storages
+        .iter()
+        .position(|shelf| shelf.agent == Agent::Robot && kitchen.content(shelf.item).name == "nori");
     let board = kitchen.location_named("assembly_board").expect("a location").index();
     let spots = serde_json::json!([{"place": {"storage": shelf.expect("a shelf")}}, {"place": {"location": board}}]);
     assert_eq!(serde_json::to_value(&page.frames).expect("JSON"), spots);

@@ -17,7 +17,7 @@ const Reason = (() => {
   }
 
   // What is needed next: whatever is pressed, read or held. The line hides none of it, if there is room.
-  const NEEDED = ".pill, .spot .furniture, .dock, .shelf, .spot.order, .key, .recipe.open, .gripper, .tag, .flash, .sheet.open button, .sheet.open p, .sheet.open h1, .sheet.open h2, .lesson";
+  const NEEDED = ".pill, .spot .furniture, .dock, .shelf, .spot.order, .key, .recipe.open, .gripper, .tag, .flash, .sheet.open button, .sheet.open p, .sheet.open h1, .sheet.open h2, .probing .left, .lesson";
   // What is better seen, too, but not at any distance.
   const NAMES = ".name, .zone h2, .status span";
   // Air around the line, and beside what a tutorial marks with a frame, in heights of the line; how far it is moved up or down in one try, and how many tries to each side.

@@ -68,12 +68,13 @@ const OPACITY: f32 = 0.999;
 /// Drawing order of pictures of the lowest layer: below outlines and labels.
 const LOWEST: f32 = -20.0;
 
-/// Identity of a Rerun stream: id and name, and what a viewer shows as the recording's properties, each with its name.
+/// Identity of a Rerun stream: id and name, and what a viewer shows as properties of its recordings.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct StreamIdentity {
     pub id: String,
     pub name: String,
-    pub facts: Vec<(String, String)>,
+    /// For each recording a title, and facts with their names.
+    pub facts: Vec<(String, Vec<(&'static str, String)>)>,
 }
 
 /// Outputs of a Rerun stream: a file, a server, or both.
@@ -353,11 +354,12 @@ fn stream(identity: &StreamIdentity, piece: Duration) -> io::Result<RecordingStr
     // The stream contains only times of the session, not times of Rerun's SDK.
     stream.set_log_time_enabled(false);
     stream.set_log_tick_enabled(false);
-    let facts = identity.facts.iter();
-    let facts = facts.fold(AnyValues::default(), |facts, (name, value)| {
-        facts.with_component::<Text>(name.as_str(), [value.as_str()])
-    });
-    stream.send_property("session", &facts).map_err(io::Error::other)?;
+    for (recording, facts) in &identity.facts {
+        let facts = facts
+            .iter()
+            .fold(AnyValues::default(), |facts, (name, value)| facts.with_component::<Text>(*name, [value.as_str()]));
+        stream.send_property(recording.as_str(), &facts).map_err(io::Error::other)?;
+    }
     Ok(stream)
 }
 

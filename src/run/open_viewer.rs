@@ -323,7 +323,7 @@ fn write(
     let id = format!("{} {} {}", names.join(" "), began.join(" "), rrd::mark());
     let titles: Vec<&str> = lanes.iter().map(|lane| lane.title.as_str()).collect();
     let told = |(lane, (one, began)): (&ShownRecording, (&Playing, &String))| {
-        let recording = if lane.root.is_empty() { "session" } else { &lane.root };
+        let recording = if lane.root.is_empty() { "session" } else { lane.root.as_str() };
         let mut facts = facts(one.replay.session());
         facts.push(("began", began.clone()));
         (recording.to_string(), facts)

@@ -23,7 +23,7 @@ use re_sdk_types::components::{
     Color, FillMode, InterpolationMode, MarkerShape, MediaType, Text, TextLogLevel, VideoTimestamp,
 };
 use re_sdk_types::datatypes::Quaternion;
-use re_sdk_types::{AnyValues, ComponentIdentifier};
+use re_sdk_types::AnyValues;
 
 use self::blueprint::{APPLICATION, SESSION_TIME, ViewerLayout, ViewerStart, film_entity};
 pub use self::blueprint::{ShownRecording, TRIAL_TIME};
@@ -70,12 +70,13 @@ const OPACITY: f32 = 0.999;
 /// Drawing order of pictures of the lowest layer: below outlines and labels.
 const LOWEST: f32 = -20.0;
 
-/// Identity of a Rerun stream: id and name, and what a viewer shows as the recording's properties, each with its name.
+/// Identity of a Rerun stream: id and name, and what a viewer shows as properties of its recordings.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct StreamIdentity {
     pub id: String,
     pub name: String,
-    pub facts: Vec<(String, String)>,
+    /// For each recording a title, and facts with their names.
+    pub facts: Vec<(String, Vec<(&'static str, String)>)>,
 }
 
 /// A moment of a film: the time in the film, on the trial's clock, and of the session.
@@ -391,12 +392,12 @@ fn stream(identity: &StreamIdentity, piece: Duration) -> io::Result<RecordingStr
     // The stream contains only times of the session, not times of Rerun's SDK.
     stream.set_log_time_enabled(false);
     stream.set_log_tick_enabled(false);
-    let mut facts = AnyValues::default();
-    for (name, value) in &identity.facts {
-        let name = ComponentIdentifier::try_new(name).map_err(io::Error::other)?;
-        facts = facts.with_component::<Text>(name, [value.clone()]);
+    for (recording, facts) in &identity.facts {
+        let facts = facts
+            .iter()
+            .fold(AnyValues::default(), |facts, (name, value)| facts.with_component::<Text>(*name, [value.as_str()]));
+        stream.send_property(recording.as_str(), &facts).map_err(io::Error::other)?;
     }
-    stream.send_property("session", &facts).map_err(io::Error::other)?;
     Ok(stream)
 }
 

@@ -332,11 +332,12 @@ fn write(
     let id = format!("{} {} {}", names.join(" "), began.join(" "), rrd::mark());
     let titles: Vec<&str> = lanes.iter().map(|lane| lane.title.as_str()).collect();
     let told = |(lane, (one, began)): (&ShownRecording, (&Playing, &String))| {
-        let prefix = if lane.root.is_empty() { String::new() } else { format!("{} ", lane.root) };
-        let facts = facts(one.replay.session()).into_iter().chain([("began", began.clone())]);
-        facts.map(move |(name, value)| (format!("{prefix}{name}"), value)).collect::<Vec<_>>()
+        let recording = if lane.root.is_empty() { "session" } else { lane.root.as_str() };
+        let mut facts = facts(one.replay.session());
+        facts.push(("began", began.clone()));
+        (recording.to_string(), facts)
     };
-    let facts = lanes.iter().zip(playing.iter().zip(&began)).flat_map(told).collect();
+    let facts = lanes.iter().zip(playing.iter().zip(&began)).map(told).collect();
     let identity = StreamIdentity { id, name: titles.join(" | "), facts };
     let mut writer = match RerunWriter::open(&identity, outlets, &lanes) {
         Ok(writer) => writer,

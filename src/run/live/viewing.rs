@@ -48,8 +48,9 @@ impl StreamedSession {
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let began = header.started.as_deref().unwrap_or_default();
         let whole = if is_whole { rrd::mark() } else { "part".to_string() };
-        let facts = facts(session).into_iter().chain([("began", began.to_string())]);
-        let facts = facts.map(|(name, value)| (name.to_string(), value)).collect();
+        let mut facts = facts(session);
+        facts.push(("began", began.to_string()));
+        let facts = vec![("session".to_string(), facts)];
         let identity = StreamIdentity { id: format!("{name} {began} {whole}"), name: title(session, &name), facts };
         let address = spec.live.then(|| spec.address.parse::<SocketAddr>()).transpose();
         let server = address.map_err(|error| format!("{}: {error}", spec.address))?;

@@ -3,6 +3,7 @@
 mod doctor;
 mod recordings;
 mod simulate;
+mod video;
 mod wrong;
 
 use std::process::Output;

@@ -13,7 +13,7 @@ use tomcom_session::log::video_file::{AttachedFilm, FilmAlignmentSource};
 
 /// Attaches films of the room to a recording.
 #[derive(Debug, Args)]
-#[command(after_help = "More: docs/video.md")]
+#[command(flatten_help = true, after_help = "More: docs/video.md")]
 pub(super) struct VideoArgs {
     #[command(subcommand)]
     command: VideoCommand,

@@ -439,7 +439,8 @@ fn rows_of(recordings: &[CodedRecording], file: &Path) -> FileResult<(String, Ve
         let only = || names.first().filter(|_| names.len() == 1).cloned();
         let recording = recording.or_else(only).unwrap_or_default();
         let index = names.iter().position(|name| *name == recording);
-        let press = index.and_then(|index| recordings[index].codable.errors.get(error.saturating_sub(1) as usize));
+        let press =
+            index.and_then(|index| recordings[index].codable.errors.get(usize::try_from(error.checked_sub(1)?).ok()?));
         RaterCodeRow { line, recording, rater, press: press.copied().unwrap_or(u64::MAX), code }
     });
     Ok((text, rows.collect()))

@@ -171,7 +171,8 @@ fn films_of_a_recording_are_kept_by_file_and_read_back() {
 fn filmed(name: &str) -> (PathBuf, CodedRecording) {
     let out = empty_folder(Path::new("films").join(name));
     let mut files = session_file("default");
-    files.spec.trial.presses = 60;
+    files.spec.trial.presses = 120;
+    files.spec.robot.arm = ArmKind::Timed;
     files.spec.participant.kind = ParticipantKind::Simulated;
     let recording = simulate_into(files, 1, &out).remove(0);
     let film = AttachedFilm {

@@ -50,6 +50,15 @@ fn input(reader: &str) -> Vec<u8> {
         "consensus" => b"rater_1,cause_1,aspect_1,rater_2,cause_2,aspect_2,press,cause,aspect\n\
             R1,slip,,R2,belief,plate,3,slip,\nR1,race,,R2,race,,7,race,\n"
             .to_vec(),
+        "video" => br#"{"films":[{"file":"room.mp4","sha256":"00","by":"flashes","offset_s":-3.5,"drift_ppm":20.0,"residual_ms":9.5,"flashes":5,"frame_ms":33.3,"length_s":60.0}]}"#.to_vec(),
+        "elan" => b"<ANNOTATION_DOCUMENT><HEADER><PROPERTY NAME=\"tomcom recording\">P07-1</PROPERTY></HEADER>\n\
+            <TIME_SLOT TIME_SLOT_ID=\"a\" TIME_VALUE=\"1000\"/><TIME_SLOT TIME_SLOT_ID=\"b\" TIME_VALUE=\"1500\"/>\n\
+            <TIER TIER_ID=\"errors\"><ALIGNABLE_ANNOTATION TIME_SLOT_REF1=\"a\" TIME_SLOT_REF2=\"b\">\
+            <ANNOTATION_VALUE>error 1: cut &amp; press</ANNOTATION_VALUE></ALIGNABLE_ANNOTATION></TIER>\n\
+            <TIER TIER_ID=\"codes R1\"><ALIGNABLE_ANNOTATION TIME_SLOT_REF1=\"a\" TIME_SLOT_REF2=\"b\">\
+            <ANNOTATION_VALUE>belief: plate</ANNOTATION_VALUE></ALIGNABLE_ANNOTATION></TIER></ANNOTATION_DOCUMENT>"
+            .to_vec(),
+        "boris" => br#"{"observations":{"P07-1":{"events":[[1.0,"","errors","error 1: cut","",""],[1.2,"R1","code","slip","",""]]}}}"#.to_vec(),
         "training" => br#"{"wizard":"W1","at":"2026-03-14T10:00:00Z","minutes":2.5,"criterion":{"hits":0.5,"wrong":0.2},"met":false,"recordings":[]}"#.to_vec(),
         "table" => b"participant,press,kind\nP07,1,\"slip, seen\"\n".to_vec(),
         "gaze_export" => file("tests/pupil/gaze_positions_on_surface_wall.csv"),

@@ -85,7 +85,7 @@ def check_boris(recording, errors):
     (observation,) = found["observations"].values()
     assert observation["type"] == "MEDIA" and observation["media_info"]["offset"] == {"1": 0.0, "2": 2.0}, observation["media_info"]
     # The length of a film that was attached by hand is not known.
-    assert all("Length not available" in line for line in found["said"].split("<br>") if line), found["said"]
+    assert all("Length not available" in line for line in found["said"].split("<br><br>") if line), found["said"]
     told = [event for event in observation["events"] if event[2] == "errors"]
     assert [round(event[0], 3) for event in told] == [begin / 1000 for begin, *_ in errors]
     print(f"BORIS's own reader: {len(observation['events'])} events, no fault but the films' lengths", flush=True)

@@ -26,7 +26,7 @@ const SAME_SQUARE: f64 = 0.4;
 /// A rise and fall of a pixel's brightness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeenFlash {
-    /// When it began, in seconds in the film: between the last dark and the first bright frame.
+    /// When it began, in seconds in the film: half a frame before the first bright one, since it began between two.
     pub onset_s: f64,
     /// Brightness before and after it, and its rise, of 255.
     pub dark: u8,
@@ -95,7 +95,9 @@ impl FlashSearch {
                 let (seconds, frames) = DURATION_TOLERANCE;
                 let flashes = &mut self.seen[index];
                 if (flash_s - FLASH_S).abs() <= seconds + frames * frame_s && flashes.len() < MOST_FLASHES {
-                    let onset_s = (self.times_s[onset - 1] + self.times_s[onset]) / 2.0;
+                    // Screen recorders have no frames while nothing changes: a long gap before the flash says nothing.
+                    let [before_s, bright_s, after_s] = [onset - 1, onset, onset + 1].map(|at| self.times_s[at]);
+                    let onset_s = bright_s - (bright_s - before_s).min(after_s - bright_s) / 2.0;
                     flashes.push(SeenFlash { onset_s, dark: found.dark, contrast });
                 }
             }
@@ -153,32 +155,52 @@ pub fn align(search: &FlashSearch, drawn_s: &[f64]) -> Result<FilmAlignment, Ali
         pixels.push((votes(seen, drawn_s, 4.0 * frame_s), contrast, seen));
     }
     pixels.sort_by_key(|(votes, contrast, _)| std::cmp::Reverse((*votes, *contrast)));
-    let Some((_, _, likeliest)) = pixels.first() else { return Err(AlignmentRefusal::NoFlash) };
-    let seen_s = likeliest.iter().map(|flash| flash.onset_s).collect();
-    let mut refusal = AlignmentRefusal::FewFit { seen_s, fit: usize::from(!drawn_s.is_empty()) };
-    let mut found: Vec<FilmAlignment> = Vec::new();
-    for (_, _, seen) in pixels.into_iter().take(CLOSELY) {
-        match align_pixel(seen, drawn_s, search.span_s(), frame_s) {
-            Ok(alignment) => found.push(alignment),
-            Err(AlignmentRefusal::FewFit { fit, seen_s }) => {
-                if matches!(&refusal, AlignmentRefusal::FewFit { fit: most, .. } if fit > *most) {
-                    refusal = AlignmentRefusal::FewFit { fit, seen_s };
-                }
-            }
-            Err(other) => refusal = other,
+    let Some(likeliest) = pixels
+        .iter()
+        .map(|(_, contrast, seen)| (squareness(seen), *contrast, *seen))
+        .max_by_key(|(score, contrast, _)| (*score, *contrast))
+    else {
+        return Err(AlignmentRefusal::NoFlash);
+    };
+    let try_pixel = |seen: &[SeenFlash]| align_pixel(seen, drawn_s, search.span_s(), frame_s);
+    let closely = pixels.iter().take(CLOSELY);
+    let mut found: Vec<FilmAlignment> = closely.filter_map(|(_, _, seen)| try_pixel(seen).ok()).collect();
+    // What is told of a film that does not fit is about the pixel that looks most like the page's square.
+    let refusal = || match try_pixel(likeliest.2) {
+        Err(refusal) => refusal,
+        Ok(alignment) => {
+            let seen_s = likeliest.2.iter().map(|flash| flash.onset_s).collect();
+            AlignmentRefusal::FewFit { seen_s, fit: alignment.flashes }
         }
-    }
+    };
     // Of pixels with as many flashes the first has the highest contrast.
     let most = found.iter().map(|alignment| alignment.flashes).max().unwrap_or(0);
     found.retain(|alignment| alignment.flashes == most);
-    let Some(best) = found.first().cloned() else { return Err(refusal) };
+    let Some(best) = found.first().cloned() else { return Err(refusal()) };
     let middle_s = drawn_s[drawn_s.len() / 2];
     let at = |alignment: &FilmAlignment| alignment.offset_s + middle_s * (1.0 + alignment.drift);
     // Where several alignments are as good, none is known to be right.
     if found.iter().any(|other| (at(other) - at(&best)).abs() > 2.0 * frame_s + 2.0 * best.residual_s) {
-        return Err(refusal);
+        return Err(refusal());
     }
     Ok(best)
+}
+
+/// How much a pixel's flashes look like those of one square: the number of those of about the same brightness and contrast,
+/// less the others.
+fn squareness(seen: &[SeenFlash]) -> i64 {
+    let median = |of: fn(&SeenFlash) -> u8| {
+        let mut values: Vec<u8> = seen.iter().map(of).collect();
+        values.sort_unstable();
+        f64::from(values[values.len() / 2])
+    };
+    let (dark, contrast) = (median(|flash| flash.dark), median(|flash| flash.contrast));
+    let is_like = |flash: &&SeenFlash| {
+        let is_near = |value: u8, middle: f64| (f64::from(value) - middle).abs() <= SAME_SQUARE * contrast;
+        is_near(flash.dark, dark) && is_near(flash.contrast, contrast)
+    };
+    let like = seen.iter().filter(is_like).count() as i64;
+    like - 3 * (seen.len() as i64 - like)
 }
 
 /// Number of flashes that lie about equally far from flashes of the log.

@@ -4,6 +4,7 @@ mod doctor;
 mod lab;
 mod recordings;
 mod simulate;
+mod video;
 mod wrong;
 
 use std::process::Output;

@@ -101,10 +101,8 @@ impl AnnotatedRecording {
 
 /// Codes in a file of ELAN: on tiers "codes RATER".
 pub fn from_elan(path: &Path, text: &str) -> FileResult<Vec<AnnotatedCode>> {
-    let line_at = |position: u64| {
-        let position = (position as usize).min(text.len());
-        text.as_bytes()[..position].iter().filter(|&&byte| byte == b'\n').count() + 1
-    };
+    // Up to where lines were counted, and the line there.
+    let (mut counted, mut line) = (0, 1);
     let wrong = |line: usize, found: String, remedy: &str| {
         let before: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
         let length = text[before..].lines().next().map_or(0, str::len);
@@ -117,7 +115,9 @@ pub fn from_elan(path: &Path, text: &str) -> FileResult<Vec<AnnotatedCode>> {
     let mut is_elan = false;
     loop {
         let event = reader.read_event();
-        let line = line_at(reader.buffer_position());
+        let position = (reader.buffer_position() as usize).clamp(counted, text.len());
+        line += text.as_bytes()[counted..position].iter().filter(|&&byte| byte == b'\n').count();
+        counted = position;
         let not_read =
             |error: &dyn std::fmt::Display| wrong(line, error.to_string(), "a file that ELAN has saved (EAF)");
         let event = event.map_err(|error| not_read(&error))?;

@@ -24,9 +24,10 @@ use tomcom_session::files::compile_kitchen;
 use tomcom_session::files::file_error::FileResult;
 use tomcom_session::files::parse::parse;
 use tomcom_session::header::RecordedFile;
-use tomcom_session::log::{EXCLUSION_NAME, LogReader, consensus_file, rater_codes, ruling};
+use tomcom_session::log::{EXCLUSION_NAME, LogReader, consensus_file, rater_codes, ruling, video_file};
 use tomcom_session::plan::{Questionnaire, Study};
 use tomcom_session::tracker::TrackerSpec;
+use tomcom_study::analysis::annotations::codes as annotations;
 use tomcom_study::files::{export, training};
 
 const LAYOUT: &str = include_str!("../../../../layouts/sushi.toml");
@@ -37,7 +38,7 @@ const RECORDING: &str = include_str!("../../../golden/format-3-hand.jsonl");
 pub type Reader = fn(&[u8]);
 
 /// The readers with the names that `tests/fuzz/run` takes.
-pub const READERS: [(&str, Reader); 21] = [
+pub const READERS: [(&str, Reader); 24] = [
     ("layout", layout),
     ("recipes", recipes),
     ("session", session),
@@ -50,6 +51,9 @@ pub const READERS: [(&str, Reader); 21] = [
     ("exclusion", exclusion),
     ("rater_codes", codes),
     ("consensus", consensus),
+    ("video", video),
+    ("elan", elan),
+    ("boris", boris),
     ("training", trained),
     ("table", table),
     ("gaze_export", gaze_export),
@@ -132,6 +136,20 @@ fn codes(bytes: &[u8]) {
     let path = file("codes-R1.csv", bytes);
     shown(rater_codes::read_all(&folder(), &codable()).map(drop));
     shown(rater_codes::read_export(&path).map(drop));
+}
+
+/// The films of a recording, beside its log.
+fn video(bytes: &[u8]) {
+    file(video_file::VIDEO_NAME, bytes);
+    shown(video_file::read(&folder()).map(|films| films.films.len()));
+}
+
+fn elan(bytes: &[u8]) {
+    shown(annotations::from_elan(Path::new("codes.eaf"), &text(bytes)).map(|codes| codes.len()));
+}
+
+fn boris(bytes: &[u8]) {
+    shown(annotations::from_boris(Path::new("codes.boris"), &text(bytes)).map(|codes| codes.len()));
 }
 
 /// What two raters settled, beside a log.

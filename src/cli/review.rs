@@ -72,6 +72,6 @@ pub(super) fn review(args: &ReviewArgs) -> Result<(), Failure> {
             recordings.len()
         )));
     }
-    let recordings = each_chosen(&recordings)?;
+    let recordings = each_chosen(&recordings, "open")?;
     if args.errors { list_landmarks(&recordings) } else { open(recordings, save, args.web, args.at) }
 }

@@ -38,6 +38,7 @@ use std::time::Duration;
 
 use clap::{CommandFactory, Parser};
 use miette::MietteHandlerOpts;
+use serde::Serialize;
 
 use self::args::*;
 use self::failure::{Failure, wrong_argument};
@@ -50,10 +51,10 @@ use crate::run::key_file;
 use crate::run::options::{self, DEFAULT_SESSION};
 use crate::run::plan::{self, StudyProgress};
 use crate::run::review_console as console_over;
-use tomcom_core::base::text::printable;
+use tomcom_core::base::text::{PathText, printable};
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::history::event_words;
-use tomcom_session::log::{self, LogEnding};
+use tomcom_session::log::{self, ExclusionRecord, LogEnding, LogReader};
 use tomcom_session::replay::RecordingReplay;
 use tomcom_session::verify;
 use tomcom_study::analysis::kitchen_summary::{self, KitchenSummary};
@@ -64,6 +65,17 @@ use tomcom_study::standing;
 const FAILED: u8 = 1;
 /// Exit code of a command with wrong arguments or files.
 const WRONG: u8 = 2;
+
+/// A recording that was excluded or included again with others: the output of `tomcom exclude --code`.
+#[derive(Debug, Serialize)]
+struct RuledRecording {
+    recording: PathText,
+    /// False if it is included again.
+    excluded: bool,
+    reason: String,
+    /// UTC, RFC 3339.
+    at: String,
+}
 
 /// Period of polling a running session for new events.
 const FOLLOW_INTERVAL: Duration = Duration::from_millis(50);
@@ -141,7 +153,7 @@ fn show_plan(args: &PlanArgs) -> Result<(), Failure> {
 }
 
 fn replay(args: &ReplayArgs) -> Result<(), Failure> {
-    let recording = &list::chosen(&args.recording)?;
+    let recording = &list::chosen(&args.recording, "replay")?;
     if args.verify {
         let found = verify::verify(recording)?;
         print(args.format, &found, || verify::describe(&found))?;
@@ -190,8 +202,12 @@ fn kitchen(args: &KitchenArgs) -> Result<(), Failure> {
 }
 
 fn exclude(args: &ExcludeArgs) -> Result<(), Failure> {
-    let recording = list::chosen(&args.recording)?;
-    let ruling = log::rule(&recording, !args.back, args.reason.as_deref().unwrap_or_default())?;
+    let reason = args.reason.as_deref().unwrap_or_default();
+    if let Some(code) = &args.code {
+        return exclude_participant(args, code, reason);
+    }
+    let recording = list::chosen(&args.recording, if args.back { "include again" } else { "exclude" })?;
+    let ruling = log::rule(&recording, !args.back, reason)?;
     // A recording that is included again can still be left out because its trial was aborted; the message says so.
     let aborted = if ruling.excluded { None } else { standing::aborted(&recording)? };
     let words = match (ruling.excluded, aborted) {
@@ -204,8 +220,31 @@ fn exclude(args: &ExcludeArgs) -> Result<(), Failure> {
     print(args.format, &ruling, || format!("{} {words}\n", recording.display()))
 }
 
+/// Excludes all recordings of a participant in a folder, or includes them again; those that are so already stay as they
+/// are.
+fn exclude_participant(args: &ExcludeArgs, code: &str, reason: &str) -> Result<(), Failure> {
+    list::exists(&args.recording)?;
+    let mut ruled = Vec::new();
+    for recording in list::of_participant(&args.recording, code)? {
+        if log::is_excluded(&mut LogReader::open(&recording)?)? == args.back {
+            let ExclusionRecord { excluded, reason, at } = log::rule(&recording, !args.back, reason)?;
+            ruled.push(RuledRecording { recording: recording.into(), excluded, reason, at });
+        }
+    }
+    let words = match (args.back, ruled.len()) {
+        (false, 0) => format!("all recordings of {code} are excluded already"),
+        (true, 0) => format!("no recording of {code} is excluded"),
+        (false, _) => format!("recordings of {code} that are left out of the analysis from now on:"),
+        (true, _) => format!("recordings of {code} that are counted in the analysis again:"),
+    };
+    print(args.format, &ruled, || {
+        let named: String = ruled.iter().map(|one| format!("  {}\n", one.recording)).collect();
+        format!("{words}\n{named}")
+    })
+}
+
 fn correct(args: &CorrectArgs) -> Result<(), Failure> {
-    let recording = list::chosen(&args.recording)?;
+    let recording = list::chosen(&args.recording, "correct")?;
     let correction = log::correct(&recording, args.code.as_deref(), args.why.as_deref().unwrap_or_default())?;
     print(args.format, &correction, || {
         let (before, after) = (&correction.before, &correction.after);

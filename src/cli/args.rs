@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use tomcom_core::communication::settings::ConceptSpec;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 
 use super::choices::{ArmArg, SimulatedCondition, concept};
 use super::data::{CodesArgs, ForgetArgs};
@@ -261,20 +261,25 @@ pub(super) struct KeysArgs {
     pub(super) session: Option<PathBuf>,
 }
 
-/// Excludes a recording from the analysis, or includes it again.
+/// Excludes a recording from the analysis, or all of a participant; or includes them again.
 ///
-/// The recording must be closed. Its log stays as it is.
+/// The recordings must be closed. Their logs stay as they are.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "While the session is open, its console does it.\nExample: tomcom exclude sessions/2026-03-14-P07-1 --reason \"the tracker slipped\"\nMore: docs/recordings.md"
+    after_help = "While the session is open, its console does it.\nExamples: tomcom exclude sessions/2026-03-14-P07-1 --reason \"the tracker slipped\"\n          \
+                  tomcom exclude sessions --code P07 --reason \"asked for it\"\nMore: docs/recordings.md",
+    group = ArgGroup::new("ruling").args(["reason", "back"]).required(true).multiple(true)
 )]
 pub(super) struct ExcludeArgs {
-    /// The folder of a recording.
+    /// The folder of a recording; with --code, of recordings.
     pub(super) recording: PathBuf,
+    /// Exclude all recordings of this participant in the folder.
+    #[arg(long)]
+    pub(super) code: Option<String>,
     /// Reason for the exclusion.
-    #[arg(long, required_unless_present = "back")]
+    #[arg(long)]
     pub(super) reason: Option<String>,
-    /// Include the recording again.
+    /// Include again.
     #[arg(long)]
     pub(super) back: bool,
     /// Output format.
@@ -289,19 +294,20 @@ pub(super) struct ExcludeArgs {
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples: tomcom correct sessions/2026-03-14-P02-1 --code P03 --why \"the code of the day before\"\n          \
-                  tomcom correct sessions/2026-03-14-P02-1 --undo\nMore: docs/recordings.md"
+                  tomcom correct sessions/2026-03-14-P02-1 --undo\nMore: docs/recordings.md",
+    group = ArgGroup::new("correction").args(["code", "undo"]).required(true)
 )]
 pub(super) struct CorrectArgs {
     /// The folder of a recording.
     pub(super) recording: PathBuf,
     /// The code of the participant who took part.
-    #[arg(long, required_unless_present = "undo", requires = "why")]
+    #[arg(long, requires = "why")]
     pub(super) code: Option<String>,
     /// Why the code is corrected.
     #[arg(long)]
     pub(super) why: Option<String>,
     /// Take all corrections back: the code in the log holds again.
-    #[arg(long, conflicts_with = "code")]
+    #[arg(long)]
     pub(super) undo: bool,
     /// Output format.
     #[arg(long, value_enum, default_value = "text")]

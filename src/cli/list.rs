@@ -1,5 +1,6 @@
 //! The command `tomcom list`, and the choice of a recording from a folder of recordings.
 
+use std::collections::BTreeSet;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
@@ -10,7 +11,7 @@ use super::output::{OutputFormat, print, progress, put_aside};
 use crate::run::near_path;
 use crate::run::recording_list::{self, RecordingListDetail};
 use tomcom_core::base::text::count;
-use tomcom_session::log::LOG_NAME;
+use tomcom_session::log::{LOG_NAME, LogReader};
 use tomcom_study::files::recordings;
 use tomcom_study::gathered::GatheredRecordings;
 use tomcom_study::planned_trial::copies_in_words;
@@ -47,8 +48,9 @@ pub(super) fn list(args: &ListArgs) -> Result<(), Failure> {
 }
 
 /// Chooses one recording per path: if a path is a folder of recordings, the user chooses a recording at the terminal.
-pub(super) fn each_chosen(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
-    paths.iter().map(|path| chosen(path)).collect()
+/// `does`: what is done with it, as the name of a key.
+pub(super) fn each_chosen(paths: &[PathBuf], does: &'static str) -> Result<Vec<PathBuf>, Failure> {
+    paths.iter().map(|path| chosen(path, does)).collect()
 }
 
 /// Gathers the recordings at these paths, each trial once, and tells which are copies.
@@ -61,14 +63,15 @@ pub(super) fn gathered(paths: &[PathBuf]) -> Result<GatheredRecordings, Failure>
 }
 
 /// Finds the recording at a path: if the path is a folder of recordings, the user chooses a recording at the terminal.
-pub(super) fn chosen(path: &Path) -> Result<PathBuf, Failure> {
+/// `does`: what is done with it, as the name of a key.
+pub(super) fn chosen(path: &Path, does: &'static str) -> Result<PathBuf, Failure> {
     exists(path)?;
     if !path.is_dir() || path.join(LOG_NAME).exists() {
         return Ok(path.to_path_buf());
     }
     let found = recordings::of_folder(path)?;
     if std::io::stdin().is_terminal() && std::io::stdout().is_terminal() {
-        return recording_list::pick(path)?.ok_or(Failure::Unread);
+        return recording_list::pick(path, does)?.ok_or(Failure::Unread);
     }
     let named: Vec<String> = found.iter().take(MOST_NAMED).map(|path| path.display().to_string()).collect();
     let more = match found.len().saturating_sub(MOST_NAMED) {
@@ -81,6 +84,28 @@ pub(super) fn chosen(path: &Path) -> Result<PathBuf, Failure> {
         "{}: found a folder with {number}, where one recording is meant",
         path.display()
     )))
+}
+
+/// The recordings of a participant in a folder of recordings, sorted by name.
+pub(super) fn of_participant(folder: &Path, code: &str) -> Result<Vec<PathBuf>, Failure> {
+    let mut codes = BTreeSet::new();
+    let mut found = Vec::new();
+    for recording in recordings::of_folder(folder)? {
+        let own = LogReader::open(&recording)?.header.session.participant.code;
+        if own == code {
+            found.push(recording);
+        }
+        codes.insert(own);
+    }
+    if found.is_empty() {
+        let codes: Vec<String> = codes.into_iter().take(MOST_NAMED).collect();
+        return Err(Failure::Wrong(miette::miette!(
+            help = format!("the code of a participant who is recorded there, such as {}", codes.join(", ")),
+            "{}: found no recording of {code}",
+            folder.display()
+        )));
+    }
+    Ok(found)
 }
 
 /// Refuses a path that does not exist, and suggests an existing path with a similar name.

@@ -85,7 +85,7 @@ pub(super) fn review(args: &ReviewArgs) -> Result<(), Failure> {
             recordings.len()
         )));
     }
-    let recordings = each_chosen(&recordings)?;
+    let recordings = each_chosen(&recordings, "open")?;
     let AskedLandmarks { errors, signals, beliefs } = args.asked;
     match errors || signals || beliefs {
         true => list_landmarks(&recordings, args.asked),

@@ -89,7 +89,7 @@ pub(super) fn video(args: &VideoArgs) -> Result<(), Failure> {
         let help = "a command for each film, since each camera began at a time of its own";
         return Err(Failure::Wrong(miette::miette!(help = help, "found {found}")));
     }
-    let recording = chosen(&args.recording)?;
+    let recording = chosen(&args.recording, "attach to it")?;
     let bar = progress(0, "seconds of film");
     let films = film::attach(&recording, &args.films, request, args.copy, || {
         bar.inc_length(1);

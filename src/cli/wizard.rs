@@ -118,9 +118,9 @@ pub(super) fn compare(args: &CompareArgs) -> Result<(), Failure> {
             let help = "one recording to follow: its folder";
             return Err(Failure::Wrong(miette::miette!(help = help, "found --follow and {} paths", args.paths.len())));
         };
-        return Ok(review_console::review(&chosen(recording)?, true, Some(&request(args.window)))?);
+        return Ok(review_console::review(&chosen(recording, "follow")?, true, Some(&request(args.window)))?);
     }
-    let recordings = gathered(&each_chosen(&args.paths)?)?;
+    let recordings = gathered(&each_chosen(&args.paths, "compare")?)?;
     let windows: Vec<u32> = if args.sweep { similarity::SWEEP.collect() } else { vec![args.window] };
     let bar = progress((recordings.paths.len() * windows.len()) as u64, "recordings");
     let watch = |window: u32| similarity::watch(&recordings, &request(window), || bar.inc(1));
@@ -188,7 +188,7 @@ pub(super) fn train(args: &TrainArgs) -> Result<(), Failure> {
             tell_carried(Path::new(DEFAULT_SESSION), Some(&args.out));
             simulate::for_training(args.seed, args.seconds, &args.out.join("recordings"))?
         }
-        given => each_chosen(given)?,
+        given => each_chosen(given, "train with it")?,
     };
     let lesson = WizardTrainingRequest {
         recordings,

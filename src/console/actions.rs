@@ -2,7 +2,7 @@
 
 use super::beliefs::{beliefs, visibility};
 use super::console_model::{ComparisonAction, ConsoleCommand, ConsoleMessage, ConsoleModel, Dialog, NoticeLevel};
-use super::key_action::{KeyAction, KeyLayer, ViewAction};
+use super::key_action::{KeyAction, KeyLayer, ManualAction, ViewAction};
 use super::key_press::{self, is_right_after_list};
 use super::panels::{self, Panel};
 use super::possible::effects;
@@ -59,6 +59,11 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
             NoticeLevel::Done,
             "the signal is taken back",
         ),
+        KeyAction::Note(_) if !preset_notes(session) => {
+            let key = model.keys.chord_for(&KeyAction::Manual(ManualAction::NoteInWords));
+            let types = key.map_or(String::new(), |key| format!("; {key} types one"));
+            refuse(model, &format!("after a trial of a plan a digit is no note{types}"))
+        }
         KeyAction::Note(index) => {
             let note = session.spec.console.notes.get(index)?.clone();
             let words = format!("note recorded: {note}");
@@ -155,6 +160,12 @@ fn advance(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand
         }
     };
     send(model, session, event, NoticeLevel::Done, words)
+}
+
+/// Whether digits record preset notes now. After a trial of a plan they do not: there a digit that was meant for the
+/// questionnaire to come would be a note.
+pub(super) fn preset_notes(session: &Session) -> bool {
+    session.protocol.is_none() || !matches!(session.phase, TrialPhase::Over(_))
 }
 
 /// Why the session would reject an event now; `None` if it would accept it.

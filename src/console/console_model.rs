@@ -11,7 +11,7 @@ use super::form::ItemChoice;
 use super::gaze_check::AccuracyCheckAction;
 use super::key_action::{KeyAction, KeyLayer};
 use super::keys::KeyBindings;
-use super::lists::{ListCursor, Picker, PickerKind};
+use super::lists::{ListCursor, Picker, ReasonFor};
 use super::mouse::SendConfirmation;
 use super::panels::Panel;
 use super::preflight::{GazePairing, ParticipantDisplayHealth};
@@ -55,8 +55,8 @@ pub enum Dialog {
     /// Gaze accuracy check: the targets, then the result.
     Calibration,
     Note(TextInput),
-    /// Text input of further words beside the chosen reason of an abort or an exclusion.
-    Reason(PickerKind, String, TextInput),
+    /// Text input of further words beside a chosen reason.
+    Reason(ReasonFor, String, TextInput),
     /// Text input of an answer to the shown questionnaire item: words or a number.
     Answer(TextInput),
     Difference(Vec<String>),
@@ -154,6 +154,8 @@ pub struct ConsoleModel {
     pub display: Option<ParticipantDisplayHealth>,
     /// In a plan: number of participants who have done everything, and of all of them.
     pub participants_done: Option<(usize, usize)>,
+    /// In a plan: whether nothing of the participant's series is left after this recording.
+    pub is_last_recording: bool,
     /// Whether the terminal is to ring with the next frame.
     pub rings: bool,
     /// The human's errors in the order of time, with reasons that were found once, when the press was judged.
@@ -220,6 +222,7 @@ impl ConsoleModel {
             recorded_gaze: None,
             display: None,
             participants_done: None,
+            is_last_recording: false,
             rings: false,
             errors: Vec::new(),
             unproven: 0,

@@ -6,6 +6,7 @@ use crossterm::event::KeyCode;
 
 use super::actions::{refuse, send};
 use super::console_model::{ConsoleCommand, ConsoleModel, Dialog, NoticeLevel};
+use super::lists::{OTHER_REASON, ReasonFor};
 use super::probe_keys;
 use super::text_input::TextInput;
 use tomcom_session::plan::{AnswerFormat, PhaseSpec, Questionnaire, Tutorial};
@@ -15,13 +16,9 @@ use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::tutorial::{TutorialEvent, TutorialPageTurner};
 use tomcom_session::{Event, Session, TrialPhase};
 
-/// Preset reasons for waiving the practice criterion.
-pub const WAIVERS: [&str; 4] = [
-    "the participant knows the task anyway",
-    "no time for more practice",
-    "technical problem",
-    "other reason, see the notes",
-];
+/// Reasons for waiving the practice criterion.
+pub const WAIVERS: [&str; 4] =
+    ["the participant knows the task anyway", "no time for more practice", "technical problem", OTHER_REASON];
 
 /// Content of a sheet, a form of the console at full size.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,6 +84,9 @@ pub(super) fn stroke(session: &Session, code: KeyCode, advances: bool) -> Option
         KeyCode::Char(letter) if letter.is_alphabetic() || letter == '-' => {
             input_of_sheet(session).map(|_| SheetKey::Letter(letter))
         }
+        KeyCode::Char(letter) if letter.is_alphabetic() && sheet(session) == Some(FormContent::Failed) => {
+            Some(SheetKey::Letter(letter))
+        }
         _ => None,
     }
 }
@@ -119,11 +119,13 @@ pub(super) fn write(model: &mut ConsoleModel, session: &Session, stroke: SheetKe
         },
         (FormContent::Questions(questionnaire), stroke) => ask(model, session, questionnaire, protocol, stroke),
         (FormContent::Failed, SheetKey::Confirm) => match model.waiver.take().and_then(|index| WAIVERS.get(index)) {
-            Some(reason) => {
-                send_protocol(model, session, ProtocolEvent::CriterionWaived { reason: reason.to_string() })
-            }
+            Some(reason) => word_waiver(model, reason, TextInput::default()),
             None => Some(ConsoleCommand::Next),
         },
+        (FormContent::Failed, SheetKey::Letter(letter)) => {
+            let reason = model.waiver.take().and_then(|index| WAIVERS.get(index)).unwrap_or(&OTHER_REASON);
+            word_waiver(model, reason, TextInput::with_text(&letter.to_string()))
+        }
         (FormContent::Failed, SheetKey::Digit(digit)) => {
             let chosen = usize::from(digit).checked_sub(1).filter(|index| *index < WAIVERS.len());
             model.waiver = chosen.or(model.waiver);
@@ -134,6 +136,12 @@ pub(super) fn write(model: &mut ConsoleModel, session: &Session, stroke: SheetKe
             None
         }
     }
+}
+
+/// Opens the field for further words to the reason for which the practice criterion is waived.
+fn word_waiver(model: &mut ConsoleModel, reason: &str, field: TextInput) -> Option<ConsoleCommand> {
+    model.dialog = Some(Dialog::Reason(ReasonFor::Waive, reason.to_string(), field));
+    None
 }
 
 /// Carries out a sheet key during the tutorial: the wizard turns the participant's page, or ends the tutorial.
@@ -362,7 +370,7 @@ pub(super) enum SheetKey {
     /// Leave the sheet's present item unanswered.
     Skip,
     Digit(u8),
-    /// A letter or a minus sign, which begins a typed answer.
+    /// A letter or a minus sign, which begins a typed answer or the words of a reason.
     Letter(char),
 }
 

@@ -6,12 +6,13 @@ use crossterm::event::KeyCode;
 use super::actions::{refuse, send};
 use super::console_model::{ConsoleCommand, ConsoleModel, Dialog, NoticeLevel};
 use super::key_action::ManualAction;
-use super::lists::{Picker, PickerAnswer, PickerKind, PickerOutcome};
+use super::lists::{OTHER_REASON, Picker, PickerAnswer, PickerKind, PickerOutcome, ReasonFor};
 use super::text_input::TextInput;
 use tomcom_core::communication::Sender;
 use tomcom_core::kitchen::Agent;
 use tomcom_session::history::wording;
 use tomcom_session::probes::ProbeEvent;
+use tomcom_session::protocol::ProtocolEvent;
 use tomcom_session::{Event, Session, TrialPhase};
 
 pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: ManualAction) -> Option<ConsoleCommand> {
@@ -44,10 +45,10 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: ManualAct
         }
         // The trial stands while the wizard chooses a reason and adds words: the space bar types a space in them.
         ManualAction::Abort if session.is_running() => {
-            model.dialog = Some(Dialog::Pick(Picker::new(PickerKind::Abort)));
+            model.dialog = Some(Dialog::Pick(Picker::new(PickerKind::Reason(ReasonFor::Abort))));
             send(model, session, Event::TrialPaused, NoticeLevel::Done, "the trial is paused; esc keeps it")
         }
-        ManualAction::Abort => ask(model, PickerKind::Abort),
+        ManualAction::Abort => ask(model, PickerKind::Reason(ReasonFor::Abort)),
         ManualAction::Preflight if session.phase != TrialPhase::Ready => {
             refuse(model, "preflight checks are shown only before the trial starts")
         }
@@ -73,13 +74,14 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: ManualAct
         ManualAction::Exclude if matches!(session.phase, TrialPhase::Ready | TrialPhase::Closed) => {
             refuse(model, "no trial has begun that could be excluded")
         }
-        ManualAction::Exclude => ask(model, PickerKind::Exclude),
+        ManualAction::Exclude if session.aborted.is_some() => refuse(model, "an aborted trial is left out already"),
+        ManualAction::Exclude => ask(model, PickerKind::Reason(ReasonFor::Exclude)),
         ManualAction::AskProbe => {
             let words = "a freeze probe is requested";
             send(model, session, Event::Probe(ProbeEvent::Requested), NoticeLevel::Done, words)
         }
         ManualAction::SkipProbe => match skippable(session) {
-            Some(probe) => ask(model, PickerKind::SkipProbe(probe)),
+            Some(probe) => ask(model, PickerKind::Reason(ReasonFor::SkipProbe(probe))),
             None => refuse(model, "no freeze probe is open"),
         },
     }
@@ -91,10 +93,13 @@ pub(super) fn skippable(session: &Session) -> Option<u32> {
     (open.closed.is_none() && session.phase == TrialPhase::Paused).then_some(open.number)
 }
 
-/// Closes the list of reasons for skipping a freeze probe once that probe is over, so that the reason does not skip the
-/// next probe.
+/// Closes the list of reasons for skipping a freeze probe, or the field for its words, once that probe is over, so that
+/// the reason does not skip the next probe.
 pub fn expire(model: &mut ConsoleModel, session: &Session) {
-    if let Some(Dialog::Pick(Picker { kind: PickerKind::SkipProbe(probe), .. })) = model.dialog
+    if let Some(
+        Dialog::Pick(Picker { kind: PickerKind::Reason(ReasonFor::SkipProbe(probe)), .. })
+        | Dialog::Reason(ReasonFor::SkipProbe(probe), ..),
+    ) = model.dialog
         && skippable(session) != Some(probe)
     {
         model.dialog = None;
@@ -147,45 +152,47 @@ pub(super) fn write(
     }
 }
 
-/// Handles a key in the text input beside a chosen reason.
+/// Handles a key in the text input beside a chosen reason. Another reason than the preset ones needs words.
 pub(super) fn word_reason(
     model: &mut ConsoleModel,
     session: &Session,
-    (kind, reason, mut line): (PickerKind, String, TextInput),
+    (what, reason, mut line): (ReasonFor, String, TextInput),
     code: KeyCode,
 ) -> Option<ConsoleCommand> {
     model.dialog = None;
     match code {
-        KeyCode::Esc => ask(model, kind),
+        // The reasons for waiving the criterion stand on the sheet below.
+        KeyCode::Esc if what == ReasonFor::Waive => None,
+        KeyCode::Esc => ask(model, PickerKind::Reason(what)),
+        KeyCode::Enter if line.text().is_empty() && reason == OTHER_REASON => {
+            model.dialog = Some(Dialog::Reason(what, reason, line));
+            refuse(model, "another reason needs words: type them, or esc goes back")
+        }
         KeyCode::Enter => {
             let words = line.text();
-            give_reason(model, session, kind, if words.is_empty() { reason } else { format!("{reason}: {words}") })
+            give_reason(model, session, what, if words.is_empty() { reason } else { format!("{reason}: {words}") })
         }
         _ => {
             line.key(code);
-            model.dialog = Some(Dialog::Reason(kind, reason, line));
+            model.dialog = Some(Dialog::Reason(what, reason, line));
             None
         }
     }
 }
 
-/// Aborts or excludes the trial, or skips the rest of a probe, for this reason.
-fn give_reason(
-    model: &mut ConsoleModel,
-    session: &Session,
-    kind: PickerKind,
-    reason: String,
-) -> Option<ConsoleCommand> {
-    let (event, words) = match kind {
-        PickerKind::Abort => (Event::TrialAborted { reason }, "the trial is aborted".to_string()),
-        PickerKind::SkipProbe(probe) => {
+/// Aborts or excludes the trial, skips the rest of a probe, or waives the practice criterion, for this reason.
+fn give_reason(model: &mut ConsoleModel, session: &Session, what: ReasonFor, reason: String) -> Option<ConsoleCommand> {
+    let (event, words) = match what {
+        ReasonFor::Abort => (Event::TrialAborted { reason }, "the trial is aborted".to_string()),
+        ReasonFor::SkipProbe(probe) => {
             let words = "the other questions of the freeze probe are skipped";
             (Event::Probe(ProbeEvent::Skipped { probe, reason }), words.to_string())
         }
-        _ => {
+        ReasonFor::Exclude => {
             let words = format!("the trial is excluded: {reason}");
             (Event::TrialExcluded { reason }, words)
         }
+        ReasonFor::Waive => (Event::Protocol(ProtocolEvent::CriterionWaived { reason }), String::new()),
     };
     send(model, session, event, NoticeLevel::Done, &words)
 }
@@ -207,8 +214,15 @@ pub(super) fn pick(
             model.dialog = back.map(Dialog::Pick);
             return None;
         }
+        PickerOutcome::Words(words) => {
+            let PickerKind::Reason(what) = picker.kind else { return None };
+            let field = TextInput::with_text(&words);
+            model.dialog = Some(Dialog::Reason(what, OTHER_REASON.to_string(), field));
+            return None;
+        }
         PickerOutcome::This(answer) => answer,
     };
+    let takes_words = picker.takes_words(session);
     model.dialog = None;
     model.answered = Some(model.clock);
     let kitchen = &session.kitchen;
@@ -225,11 +239,11 @@ pub(super) fn pick(
             let button = kitchen.button(Agent::Robot, button).name.clone();
             send(model, session, Event::RobotDriven { by: Sender::Wizard, button }, NoticeLevel::Done, &words)
         }
-        (kind @ (PickerKind::Abort | PickerKind::Exclude), PickerAnswer::Reason(reason)) if !session.is_running() => {
-            model.dialog = Some(Dialog::Reason(kind, reason, TextInput::default()));
+        (PickerKind::Reason(what), PickerAnswer::Reason(reason)) if takes_words => {
+            model.dialog = Some(Dialog::Reason(what, reason, TextInput::default()));
             None
         }
-        (kind, PickerAnswer::Reason(reason)) => give_reason(model, session, kind, reason),
-        (_, PickerAnswer::Content(_)) => None,
+        (PickerKind::Reason(what), PickerAnswer::Reason(reason)) => give_reason(model, session, what, reason),
+        (_, PickerAnswer::Reason(_) | PickerAnswer::Content(_)) => None,
     }
 }

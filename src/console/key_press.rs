@@ -48,7 +48,9 @@ pub(super) fn press(
     match action {
         // A trial goes on by itself after a freeze probe, even while a note is typed.
         Some(KeyAction::StopRobot) if session.is_running() => stop_robot(model, session),
-        // In text input, where the robot stands, the space bar types a space instead of stopping it.
+        // In text input, where the robot stands, the space bar types a space instead of stopping it; likewise among the
+        // typed words of a reason.
+        Some(KeyAction::StopRobot) if types_reason(model, session) => in_list(model, session, (code, chord), touch),
         _ if matches!(model.dialog, Some(Dialog::Note(_) | Dialog::Reason(..) | Dialog::Answer(_))) => {
             in_text(model, session, (code, chord), touch)
         }
@@ -58,7 +60,7 @@ pub(super) fn press(
         }
         Some(KeyAction::Move(to)) if model.dialog.is_none() => Some(ConsoleCommand::Move(to)),
         _ if matches!(model.dialog, Some(Dialog::Pick(_) | Dialog::Palette(_))) => {
-            in_list(model, session, chord, touch)
+            in_list(model, session, (code, chord), touch)
         }
         action if model.dialog == Some(Dialog::Preflight) => {
             preflight::answer(model, session, chord.code, action, touch == KeyPressKind::Press)
@@ -102,8 +104,8 @@ fn in_text(
     }
     match model.dialog.clone() {
         Some(Dialog::Note(line)) => interventions::write(model, session, line, code),
-        Some(Dialog::Reason(kind, reason, line)) => {
-            interventions::word_reason(model, session, (kind, reason, line), code)
+        Some(Dialog::Reason(what, reason, line)) => {
+            interventions::word_reason(model, session, (what, reason, line), code)
         }
         Some(Dialog::Answer(line)) => form::type_answer(model, session, line, code),
         _ => None,
@@ -115,17 +117,22 @@ fn in_text(
 fn in_list(
     model: &mut ConsoleModel,
     session: &Session,
-    chord: KeyChord,
+    (code, chord): (KeyCode, KeyChord),
     touch: KeyPressKind,
 ) -> Option<ConsoleCommand> {
     if chord.ctrl || (chord.code == KeyCode::Enter && touch != KeyPressKind::Press) {
         return None;
     }
     match model.dialog.clone() {
-        Some(Dialog::Pick(picker)) => interventions::pick(model, session, picker, chord.code),
+        Some(Dialog::Pick(picker)) => interventions::pick(model, session, picker, code),
         Some(Dialog::Palette(cursor)) => choose(model, session, cursor, chord.code),
         _ => None,
     }
+}
+
+/// Whether the words of a reason are being typed in the list of reasons.
+fn types_reason(model: &ConsoleModel, session: &Session) -> bool {
+    matches!(&model.dialog, Some(Dialog::Pick(list)) if list.takes_words(session) && !list.cursor.filter.is_empty())
 }
 
 /// Handles a key of the palette. The chosen action is carried out as if its key were pressed; but signals are never

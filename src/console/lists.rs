@@ -67,6 +67,19 @@ impl ListCursor {
     /// kept, so that a whole code leaves its own row: each typed word begins a word; or a line of the row's text has the
     /// typed letters in one piece, signs and spaces left out; or it has them in their order.
     pub fn found(&self, rows: impl Iterator<Item = String>) -> Vec<usize> {
+        let mut found = self.ranked(rows);
+        let best = found.first().map(|((kind, _), _)| *kind);
+        found.retain(|((kind, _), _)| Some(*kind) == best);
+        found.into_iter().map(|(_, index)| index).collect()
+    }
+
+    /// Likewise, but only those in which each typed word begins a word.
+    fn begun(&self, rows: impl Iterator<Item = String>) -> Vec<usize> {
+        self.ranked(rows).into_iter().filter(|((kind, _), _)| *kind == 0).map(|(_, index)| index).collect()
+    }
+
+    /// The rows that match: kind of the match, how bad it is, and index; the best one first.
+    fn ranked(&self, rows: impl Iterator<Item = String>) -> Vec<((u8, i64), usize)> {
         let typed = self.filter.to_lowercase();
         let scattered = SkimMatcherV2::default();
         let joined = |line: &str| line.chars().filter(|letter| letter.is_alphanumeric()).collect::<String>();
@@ -91,10 +104,32 @@ impl ListCursor {
         };
         let mut found: Vec<_> = rows.enumerate().filter_map(|(index, text)| Some((rank(text)?, index))).collect();
         found.sort_unstable();
-        let best = found.first().map(|((kind, _), _)| *kind);
-        found.retain(|((kind, _), _)| Some(*kind) == best);
-        found.into_iter().map(|(_, index)| index).collect()
+        found
     }
+
+    /// Moves the cursor to the row whose number is typed, where nothing is typed to filter the rows.
+    fn number(&mut self, rows: usize, code: KeyCode) -> bool {
+        let KeyCode::Char(digit @ '1'..='9') = code else { return false };
+        let row = usize::from(digit as u8 - b'1');
+        let is_number = self.filter.is_empty() && row < rows;
+        if is_number {
+            self.at = row;
+        }
+        is_number
+    }
+}
+
+/// Last entry of every list of reasons: its words are typed.
+pub const OTHER_REASON: &str = "other reason";
+
+/// What the wizard gives a reason for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReasonFor {
+    Abort,
+    Exclude,
+    SkipProbe(u32),
+    /// Going on in a plan although the practice criterion is not met. Its reasons stand on a sheet, not in a list.
+    Waive,
 }
 
 /// Question that a list of answers asks the wizard.
@@ -104,9 +139,7 @@ pub enum PickerKind {
     Place,
     Content(LocationId),
     Button,
-    Abort,
-    Exclude,
-    SkipProbe(u32),
+    Reason(ReasonFor),
 }
 
 /// Answer that the wizard chose from a list.
@@ -139,6 +172,8 @@ pub enum PickerOutcome {
     Nothing,
     Left,
     This(PickerAnswer),
+    /// What was typed is no entry, so it begins the words of another reason.
+    Words(String),
 }
 
 impl Picker {
@@ -152,16 +187,27 @@ impl Picker {
             PickerKind::Place => "Correct the kitchen: which place?".to_string(),
             PickerKind::Content(place) => format!("What is really at {}?", session.kitchen.location(place).label()),
             PickerKind::Button => "The robot's next press".to_string(),
-            PickerKind::Abort => "Abort the trial: why?".to_string(),
-            PickerKind::Exclude => "Exclude the trial from the analysis: why?".to_string(),
-            PickerKind::SkipProbe(probe) => format!("Skip the rest of probe {probe}: why?"),
+            PickerKind::Reason(ReasonFor::Abort) => "Abort the trial: why?".to_string(),
+            PickerKind::Reason(ReasonFor::Exclude) => "Exclude the trial from the analysis: why?".to_string(),
+            PickerKind::Reason(ReasonFor::SkipProbe(probe)) => format!("Skip the rest of probe {probe}: why?"),
+            PickerKind::Reason(ReasonFor::Waive) => "Waive the practice criterion: why?".to_string(),
         }
+    }
+
+    /// Whether words can be typed to the chosen reason: not while the trial runs, for there the space bar stops the robot.
+    pub fn takes_words(&self, session: &Session) -> bool {
+        matches!(self.kind, PickerKind::Reason(_)) && !session.is_running()
     }
 
     /// Entries of the list that match the filter.
     pub fn choices(&self, session: &Session) -> Vec<PickerEntry> {
         let all = self.all(session);
-        let found = self.cursor.found(all.iter().map(|choice| choice.label.clone()));
+        let labels = all.iter().map(|choice| choice.label.clone());
+        let found = match self.takes_words(session) {
+            // Words of another reason must not match an entry by letters here and there.
+            true => self.cursor.begun(labels),
+            false => self.cursor.found(labels),
+        };
         found.into_iter().map(|index| all[index].clone()).collect()
     }
 
@@ -170,17 +216,25 @@ impl Picker {
             PickerKind::Place => places(session),
             PickerKind::Content(place) => contents(session, place),
             PickerKind::Button => buttons(session),
-            PickerKind::Abort | PickerKind::Exclude | PickerKind::SkipProbe(_) => reasons(session),
+            PickerKind::Reason(_) => reasons(session, self.takes_words(session)),
         }
     }
 
     pub fn key(&mut self, session: &Session, code: KeyCode) -> PickerOutcome {
         let mut choices = self.choices(session);
+        if self.cursor.number(choices.len(), code) {
+            return PickerOutcome::Nothing;
+        }
         match self.cursor.key(choices.len(), code) {
-            ListReply::Open => PickerOutcome::Nothing,
+            ListReply::Open => self.other_words(session).map_or(PickerOutcome::Nothing, PickerOutcome::Words),
             ListReply::Left => PickerOutcome::Left,
             ListReply::Taken => PickerOutcome::This(choices.swap_remove(self.cursor.at).answer),
         }
+    }
+
+    /// The typed words, if they are the beginning of another reason than those of the list.
+    pub fn other_words(&self, session: &Session) -> Option<String> {
+        (self.takes_words(session) && self.choices(session).is_empty()).then(|| self.cursor.filter.clone())
     }
 }
 
@@ -221,13 +275,15 @@ fn buttons(session: &Session) -> Vec<PickerEntry> {
     choices
 }
 
-fn reasons(session: &Session) -> Vec<PickerEntry> {
-    let choice = |reason: &String| PickerEntry {
-        answer: PickerAnswer::Reason(reason.clone()),
-        label: reason.clone(),
+/// The preset reasons and, where words can be typed, another one.
+fn reasons(session: &Session, takes_words: bool) -> Vec<PickerEntry> {
+    let choice = |reason: &str| PickerEntry {
+        answer: PickerAnswer::Reason(reason.to_string()),
+        label: reason.to_string(),
         remark: String::new(),
     };
-    session.spec.console.reasons.iter().map(choice).collect()
+    let preset = session.spec.console.reasons.iter().map(String::as_str).filter(|reason| *reason != OTHER_REASON);
+    preset.chain(takes_words.then_some(OTHER_REASON)).map(choice).collect()
 }
 
 /// Further words by which the palette finds an action: what people type who think of it by another name.
@@ -296,6 +352,8 @@ pub struct RecordingPicker {
     pub title: String,
     pub headings: Vec<String>,
     pub rows: Vec<Vec<String>>,
+    /// What is done with the chosen recording: "replay", "exclude".
+    pub does: &'static str,
     pub cursor: ListCursor,
 }
 
@@ -309,8 +367,8 @@ pub enum RecordingReply {
 
 impl RecordingPicker {
     /// A list of recordings without a filter, with the cursor on its first row.
-    pub fn new(title: String, headings: Vec<String>, rows: Vec<Vec<String>>) -> RecordingPicker {
-        RecordingPicker { title, headings, rows, cursor: ListCursor::default() }
+    pub fn new(title: String, headings: Vec<String>, rows: Vec<Vec<String>>, does: &'static str) -> RecordingPicker {
+        RecordingPicker { title, headings, rows, does, cursor: ListCursor::default() }
     }
 
     /// Indices of the rows that match the filter, the best match first.
@@ -360,8 +418,10 @@ impl RecordingPicker {
 pub struct StartPrompt {
     pub title: String,
     pub text: Vec<String>,
-    /// Texts of the answers; key 1 selects the first.
+    /// Texts of the answers; key 1 chooses the first.
     pub answers: Vec<String>,
+    /// Index of the chosen answer, until enter gives it.
+    pub chosen: Option<usize>,
 }
 
 /// Reply of the user to a question before a recording.
@@ -372,17 +432,28 @@ pub enum StartReply {
 }
 
 impl StartPrompt {
-    /// The reply that a key gives; `None` for other keys and for key repeat.
-    pub fn reply(&self, key: &KeyEvent) -> Option<StartReply> {
+    /// A question of which no answer is chosen.
+    pub fn new(title: String, text: Vec<String>, answers: Vec<String>) -> StartPrompt {
+        StartPrompt { title, text, answers, chosen: None }
+    }
+
+    /// The reply that a key gives; `None` for keys that choose an answer, for other keys, and for key repeat.
+    pub fn reply(&mut self, key: &KeyEvent) -> Option<StartReply> {
         if key.kind != KeyEventKind::Press {
             return None;
         }
         match key.code {
             KeyCode::Esc => Some(StartReply::Leave),
             KeyCode::Char('c') if key.modifiers.contains(KeyModifiers::CONTROL) => Some(StartReply::Leave),
+            KeyCode::Enter => self.chosen.map(StartReply::Answer),
             KeyCode::Char(digit @ '1'..='9') => {
                 let index = usize::from(digit as u8 - b'1');
-                (index < self.answers.len()).then_some(StartReply::Answer(index))
+                self.chosen = Some(index).filter(|index| *index < self.answers.len()).or(self.chosen);
+                None
+            }
+            KeyCode::Backspace => {
+                self.chosen = None;
+                None
             }
             _ => None,
         }

@@ -6,7 +6,7 @@ use super::beliefs::{BeliefCorrectness, beliefs, visibility};
 use super::console_model::{ComparisonAction, ConsoleModel, Dialog};
 use super::form::sheet;
 use super::key_action::ViewAction;
-use super::lists::PickerKind;
+use super::lists::{PickerKind, ReasonFor};
 use super::view::help::help_pages;
 use super::view::regions::{LEAST, PanelAreas, ScreenSize};
 use tomcom_session::Session;
@@ -189,9 +189,10 @@ fn name(dialog: &Dialog) -> &'static str {
             PickerKind::Place => "correct_place",
             PickerKind::Content(_) => "correct_content",
             PickerKind::Button => "drive_robot",
-            PickerKind::Abort => "abort_trial",
-            PickerKind::Exclude => "exclude_trial",
-            PickerKind::SkipProbe(_) => "skip_probe",
+            PickerKind::Reason(ReasonFor::Abort) => "abort_trial",
+            PickerKind::Reason(ReasonFor::Exclude) => "exclude_trial",
+            PickerKind::Reason(ReasonFor::SkipProbe(_)) => "skip_probe",
+            PickerKind::Reason(ReasonFor::Waive) => "waive_criterion",
         },
     }
 }

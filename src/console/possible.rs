@@ -1,6 +1,6 @@
 //! Which actions have an effect now: the line of key hints shows only those.
 
-use super::actions::refusal;
+use super::actions::{preset_notes, refusal};
 use super::beliefs::{beliefs, visibility};
 use super::console_model::{ComparisonAction, ConsoleModel, Dialog, Playback, ReplayAction, SPEEDS};
 use super::form::sheet;
@@ -97,7 +97,7 @@ fn does(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {
         KeyAction::Accept => !is_right_after_list(model) && offers::enter(session, model.now).is_ok(),
         KeyAction::TakeBack => admits(Event::SignalEnded { reason: SignalEndReason::TakenBack }),
         KeyAction::Press(_) => session.is_running(),
-        KeyAction::Note(_) => session.phase != TrialPhase::Closed,
+        KeyAction::Note(_) => session.phase != TrialPhase::Closed && preset_notes(session),
         KeyAction::Advance => advances(session, model),
         KeyAction::EndTrial => runs,
         KeyAction::StopRobot => admits(Event::RobotStopped),
@@ -143,7 +143,10 @@ fn intervenes(session: &Session, action: ManualAction) -> bool {
         ManualAction::NoteInWords => phase != TrialPhase::Closed,
         ManualAction::AskProbe => admits(Event::Probe(ProbeEvent::Requested)),
         ManualAction::SkipProbe => skippable(session).is_some(),
-        ManualAction::Exclude => !matches!(phase, TrialPhase::Ready | TrialPhase::Closed),
+        ManualAction::Exclude => {
+            let is_there = !matches!(phase, TrialPhase::Ready | TrialPhase::Closed);
+            is_there && (session.aborted.is_none() || session.excluded.is_some())
+        }
     }
 }
 

@@ -6,6 +6,7 @@ use crossterm::event::KeyCode;
 use super::actions::refuse;
 use super::console_model::{ConsoleCommand, ConsoleModel, Dialog};
 use super::form;
+use super::lists::{OTHER_REASON, PickerKind};
 use tomcom_session::Session;
 
 /// Longest text that can be typed, in characters.
@@ -93,6 +94,10 @@ pub(super) fn paste(model: &mut ConsoleModel, session: &Session, text: Option<&s
         Some(Dialog::Note(line) | Dialog::Reason(_, _, line) | Dialog::Answer(line)) => line.paste(text),
         Some(Dialog::Pick(picker)) => {
             picker.cursor.paste(text);
+            if let (PickerKind::Reason(what), Some(words)) = (picker.kind, picker.other_words(session)) {
+                let field = TextInput::with_text(&words);
+                model.dialog = Some(Dialog::Reason(what, OTHER_REASON.to_string(), field));
+            }
             Ok(())
         }
         Some(Dialog::Palette(cursor)) => {

@@ -18,12 +18,12 @@ use nalgebra::Isometry3;
 use re_sdk::log::{ChunkBatcherConfig, TimeColumn};
 use re_sdk::sink::FileSink;
 use re_sdk::{AsComponents, RecordingStream, RecordingStreamBuilder, SerializedComponentBatch};
+use re_sdk_types::AnyValues;
 use re_sdk_types::archetypes;
 use re_sdk_types::components::{
     Color, FillMode, InterpolationMode, MarkerShape, MediaType, Text, TextLogLevel, VideoTimestamp,
 };
 use re_sdk_types::datatypes::Quaternion;
-use re_sdk_types::AnyValues;
 
 use self::blueprint::{APPLICATION, SESSION_TIME, ViewerLayout, ViewerStart, film_entity};
 pub use self::blueprint::{ShownRecording, TRIAL_TIME};

@@ -126,6 +126,9 @@ pub(super) async fn run<S: ConsoleShell>(
     station: &mut OperatorStation,
 ) -> Result<Option<S::Outcome>, S::Error> {
     let mut ticks = LoopTicks::start();
+    for message in station.input.forget_keys() {
+        shell.take(LoopEvent::Terminal(message))?;
+    }
     while !station.screen.is_lost() {
         match next_event(shell, station, &mut ticks).await {
             LoopEvent::EndRequest => return Ok(None),

@@ -13,6 +13,7 @@ use tokio::sync::oneshot;
 use tokio::time::timeout;
 
 use super::error::{LiveError, TerminalError};
+use crate::console::ConsoleMessage;
 use crate::console::preflight::GazePairing;
 use crate::console::view::theme::Theme;
 use crate::run::event_loop::LoopEvent;
@@ -139,6 +140,14 @@ impl OperatorStation {
 }
 
 impl OperatorInput {
+    /// What was typed, clicked and pasted before the shell that now begins was on the screen is dropped: it was meant for
+    /// another one. Returns what holds for every shell: the terminal's size and focus.
+    pub fn forget_keys(&mut self) -> Vec<ConsoleMessage> {
+        let is_state =
+            |message: &ConsoleMessage| matches!(message, ConsoleMessage::Focus(_) | ConsoleMessage::Resized(..));
+        self.terminal.waiting().into_iter().filter(is_state).collect()
+    }
+
     /// Waits for the wizard's next input, or for a signal; the program has to end also if the terminal was closed.
     pub async fn next(&mut self) -> LoopEvent {
         tokio::select! {

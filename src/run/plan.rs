@@ -111,8 +111,13 @@ pub fn describe(figures: &StudyProgress) -> String {
         *sizes.entry(one.group.as_str()).or_insert(0) += 1;
     }
     let sizes: Vec<String> = sizes.iter().map(|(group, size)| format!("{size} {group}")).collect();
+    let with_excluded = figures.participants.iter().filter(|one| one.excluded().next().is_some()).count() as u64;
+    let with_excluded = match with_excluded {
+        0 => String::new(),
+        some => format!("; {} with an excluded trial", count(some, "participant", "participants")),
+    };
     let head = format!(
-        "plan {} ({}), seed {}: {} of {} participants have done everything; groups: {}\n",
+        "plan {} ({}), seed {}: {} of {} participants have done everything{with_excluded}; groups: {}\n",
         figures.plan,
         figures.digest,
         figures.seed,

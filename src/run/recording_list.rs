@@ -165,11 +165,12 @@ fn read(path: &Path, depth: RecordingListDetail, cost: &mut KeptCost) -> FileRes
 /// Period of redrawing the list of recordings, in case the terminal's size changed.
 const REDRAW: Duration = Duration::from_millis(100);
 
-/// Asks the person which recording of the folder to use; `None` if the person chooses no recording.
+/// Asks the person which recording of the folder to use; `None` if the person chooses no recording. `does`: what is done
+/// with it.
 ///
 /// # Errors
 /// The folder cannot be read or has no recordings, or there is no terminal.
-pub fn pick(folder: &Path) -> Result<Option<PathBuf>, ReviewError> {
+pub fn pick(folder: &Path, does: &'static str) -> Result<Option<PathBuf>, ReviewError> {
     let (list, paths) = list(folder, RecordingListDetail::Quick, |_| (), || ())?;
     let mut newest: Vec<(&ListedRecording, PathBuf)> = list.recordings.iter().zip(paths).collect();
     newest.sort_by_key(|(one, _)| std::cmp::Reverse((&one.date, &one.recording)));
@@ -181,7 +182,7 @@ pub fn pick(folder: &Path) -> Result<Option<PathBuf>, ReviewError> {
     let headings = without_errors(RecordingList::HEADINGS.map(str::to_string));
     let rows = newest.iter().map(|(one, _)| without_errors(one.cells())).collect();
     let title = format!("Which recording of {}?", list.folder);
-    let picker = RecordingPicker::new(title, headings, rows);
+    let picker = RecordingPicker::new(title, headings, rows, does);
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(TerminalError)?;
     let chosen = runtime.block_on(async {
         let mut station = OperatorStation::without_devices(&ConsoleSpec::default())?;

@@ -120,6 +120,8 @@ pub(super) struct PreparedSession {
     pub place: RecordingPlace,
     /// In a plan: number of participants who have done everything, and of all of them.
     pub participants_done: Option<(usize, usize)>,
+    /// In a plan: whether nothing of the participant's series is left after this recording.
+    pub is_last: bool,
 }
 
 /// In which folder the recording's folder is created.
@@ -168,6 +170,7 @@ impl PreparedSession {
             compare: None,
             place,
             participants_done: None,
+            is_last: false,
         }
     }
 
@@ -175,8 +178,8 @@ impl PreparedSession {
         PreparedSession { consent, ..self }
     }
 
-    pub fn in_study(self, participants_done: (usize, usize)) -> PreparedSession {
-        PreparedSession { participants_done: Some(participants_done), ..self }
+    pub fn in_study(self, participants_done: (usize, usize), is_last: bool) -> PreparedSession {
+        PreparedSession { participants_done: Some(participants_done), is_last, ..self }
     }
 
     pub fn comparing(self, compare: Option<SenderComparisonSettings>) -> PreparedSession {

@@ -14,7 +14,7 @@ use crate::console::lists::StartPrompt;
 use tomcom_session::files::SessionSetup;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::log::{LogReader, RecordingLock, RecordingWriteError};
-use tomcom_session::plan::{NextRecording, ParticipantProgress, PlanRecording, Study};
+use tomcom_session::plan::{NextRecording, ParticipantProgress, PlanRecording, RecordingOutcome, Study};
 use tomcom_session::settings::ParticipantKind;
 use tomcom_session::wall_display::AnswerDevice;
 use tomcom_session::watcher::SenderComparisonSettings;
@@ -125,18 +125,26 @@ impl Planned {
         let _lock = RecordingLock::take_for_participant(&self.series.out, &self.study.plan.name, &code)?;
         let mut done = Vec::new();
         let (mut progress, mut participants) = self.progress()?;
-        if progress.next == NextRecording::Finished {
+        if progress.next == NextRecording::Finished && progress.excluded().next().is_none() {
             return Ok(SeriesOutcome { done, remark: Some(stands(&progress)) });
         }
         let mut station = OperatorStation::take(&self.series.files.spec, &self.series.files.kitchen.kitchen).await?;
         if self.series.files.spec.participant.kind == ParticipantKind::Simulated
-            && ask(&mut station, &rehearsal(&progress)).await? != Some(0)
+            && ask(&mut station, rehearsal(&progress, &self.series.out)).await? != Some(0)
         {
             return Ok(SeriesOutcome { done, remark: Some(stands(&progress)) });
         }
+        let excluded: Vec<usize> = progress.excluded().map(|(slot, _)| slot).collect();
+        if !excluded.is_empty() {
+            match ask(&mut station, repeat(&progress)).await? {
+                Some(0) => {}
+                Some(index) => progress.redo(excluded.get(index - 1).copied()),
+                None => return Ok(SeriesOutcome { done, remark: Some(stands(&progress)) }),
+            }
+        }
         while progress.next != NextRecording::Finished {
             let begun = match self.choose(&progress, &mut station).await? {
-                Choice::Begin(begun) => begun.in_study(participants),
+                Choice::Begin(begun) => begun.in_study(participants, is_last(&progress)),
                 Choice::Leave(remark) => {
                     let remark = remark.unwrap_or_else(|| stands(&progress));
                     return Ok(SeriesOutcome { done, remark: Some(remark) });
@@ -171,7 +179,7 @@ impl Planned {
         let label = spec.step.as_ref().map_or(String::new(), |step| step.label());
         let continued = match open {
             None => None,
-            Some(recording) => match ask(station, &which(progress, recording, slot)).await? {
+            Some(recording) => match ask(station, which(progress, recording, slot)).await? {
                 Some(0) => Some(recording),
                 Some(_) => None,
                 None => return Ok(Choice::Leave(None)),
@@ -192,7 +200,7 @@ impl Planned {
         }
         let on_display = self.study.plan.consent_on == AnswerDevice::Display
             && station.display.ask_consent(begun.engine.session(), &self.study.plan.consent);
-        match ask_consent(station, &consent(&self.study, progress, &label, on_display), on_display).await? {
+        match ask_consent(station, consent(&self.study, progress, &label, on_display), on_display).await? {
             Some((0, on)) => Ok(Choice::Begin(Box::new(begun.with_consent(Some(self.study.consent_given(on)))))),
             Some(_) => {
                 let remark = format!("{} does not agree to be recorded: nothing was recorded", progress.code);
@@ -203,21 +211,48 @@ impl Planned {
     }
 }
 
-/// The question whether a simulated participant is meant, where people take part.
-fn rehearsal(progress: &ParticipantProgress) -> StartPrompt {
-    let code = &progress.code;
-    StartPrompt {
-        title: format!("{code}: SIMULATED PARTICIPANT"),
-        text: vec![
+/// Whether nothing of the participant's series is left after the next recording.
+fn is_last(progress: &ParticipantProgress) -> bool {
+    let next = progress.next.slot();
+    progress.steps.iter().enumerate().all(|(slot, stand)| stand.is_done || Some(slot) == next)
+}
+
+/// The question whether a simulated participant is meant, where people take part. `out`: folder of the recordings.
+fn rehearsal(progress: &ParticipantProgress, out: &Path) -> StartPrompt {
+    let (code, out) = (&progress.code, out.display());
+    StartPrompt::new(
+        format!("{code}: SIMULATED PARTICIPANT"),
+        vec![
             "This is a rehearsal: the session file, or --participant, lets the program play the participant."
                 .to_string(),
-            format!("Its recordings count as those of {code} in this folder; for a rehearsal name another with --out."),
+            format!("Its recordings go to the folder {out}, and count there as those of {code}."),
+            "If people are recorded there, leave, and name another folder with --out.".to_string(),
         ],
-        answers: vec![
+        vec![
             "rehearse with the simulated participant".to_string(),
             "leave; with a person: --participant display, or keyboard".to_string(),
         ],
-    }
+    )
+}
+
+/// The question to the wizard whether a trial that was excluded after its session is repeated. The first answer goes on
+/// without.
+fn repeat(progress: &ParticipantProgress) -> StartPrompt {
+    let lines = progress.excluded().map(|(slot, attempt)| {
+        let RecordingOutcome::Excluded { reason } = &attempt.outcome else { return String::new() };
+        format!("The recording {} of {} is excluded: {reason}.", attempt.recording, slot_name(progress, slot))
+    });
+    let on = match progress.next.slot() {
+        None => "leave: nothing else is to be done".to_string(),
+        Some(slot) => format!("go on with {}", slot_name(progress, slot)),
+    };
+    let again =
+        progress.excluded().map(|(slot, _)| format!("repeat {} in another recording", slot_name(progress, slot)));
+    StartPrompt::new(
+        format!("{}: excluded trials", progress.code),
+        lines.collect(),
+        [on].into_iter().chain(again).collect(),
+    )
 }
 
 /// The question to the wizard whether an unfinished recording is continued or its trial repeated.
@@ -225,16 +260,16 @@ fn which(progress: &ParticipantProgress, recording: &str, slot: usize) -> StartP
     let name = slot_name(progress, slot);
     let attempt = progress.steps.get(slot).and_then(|stand| stand.recordings.last());
     let presses = attempt.map_or(0, |attempt| attempt.presses);
-    StartPrompt {
-        title: format!("{}: {name} is not done", progress.code),
-        text: vec![format!(
+    StartPrompt::new(
+        format!("{}: {name} is not done", progress.code),
+        vec![format!(
             "The recording {recording} was cut, or ended before everything was done. It has {presses} presses."
         )],
-        answers: vec![
+        vec![
             "continue this recording where it ended, with a running trial paused".to_string(),
             "do this part again from its beginning; the unfinished recording is kept, and does not count".to_string(),
         ],
-    }
+    )
 }
 
 /// The question for the participant's consent, without which nothing is recorded. If the display asks for consent, the
@@ -249,11 +284,8 @@ fn consent(study: &Study, progress: &ParticipantProgress, label: &str, on_displa
     } else {
         "yes, the participant agrees"
     };
-    StartPrompt {
-        title: format!("{}: {label}", progress.code),
-        text,
-        answers: vec![yes.to_string(), "no, the participant does not agree: nothing is recorded".to_string()],
-    }
+    let no = "no, the participant does not agree: nothing is recorded";
+    StartPrompt::new(format!("{}: {label}", progress.code), text, vec![yes.to_string(), no.to_string()])
 }
 
 /// Name of a planned trial: "familiarisation", "trial 1".
@@ -267,7 +299,11 @@ pub(super) fn slot_name(progress: &ParticipantProgress, slot: usize) -> String {
 /// Progress of a participant through the study plan, in one line.
 pub(super) fn stands(progress: &ParticipantProgress) -> String {
     let (code, done, all) = (&progress.code, progress.done(), progress.steps.len());
-    match &progress.next {
+    let excluded = match progress.excluded().count() {
+        0 => String::new(),
+        excluded => format!(", {excluded} excluded: repeat with tomcom operate SESSION --code {code}"),
+    };
+    let stand = match &progress.next {
         NextRecording::Finished => format!("{code}: everything is done"),
         NextRecording::Begin { slot, attempt: 1 } => {
             format!("{code}: {done} of {all} done, next: {}", slot_name(progress, *slot))
@@ -281,7 +317,8 @@ pub(super) fn stands(progress: &ParticipantProgress) -> String {
         NextRecording::Running { slot, recording } => {
             format!("{code}: {done} of {all} done, {} is being recorded in {recording}", slot_name(progress, *slot))
         }
-    }
+    };
+    stand + &excluded
 }
 
 /// The recordings of a study in the folder `out`, and the number of simulated ones.

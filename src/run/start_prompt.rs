@@ -2,6 +2,8 @@
 
 use std::time::{Duration, Instant};
 
+use crossterm::event::KeyCode;
+
 use super::error::LiveError;
 use super::event_loop::{self, ConsoleShell, FRAME, LoopEvent, ShellDeadlines, ShellView};
 use super::operator_station::{OperatorStation, take_consent_input};
@@ -20,7 +22,7 @@ const REDRAW: Duration = Duration::from_millis(100);
 ///
 /// # Errors
 /// The terminal was closed.
-pub(super) async fn ask(station: &mut OperatorStation, question: &StartPrompt) -> Result<Option<usize>, LiveError> {
+pub(super) async fn ask(station: &mut OperatorStation, question: StartPrompt) -> Result<Option<usize>, LiveError> {
     Ok(ask_consent(station, question, false).await?.map(|(index, _)| index))
 }
 
@@ -31,7 +33,7 @@ pub(super) async fn ask(station: &mut OperatorStation, question: &StartPrompt) -
 /// The terminal was closed.
 pub(super) async fn ask_consent(
     station: &mut OperatorStation,
-    question: &StartPrompt,
+    question: StartPrompt,
     on_display: bool,
 ) -> Result<Option<(usize, AnswerDevice)>, LiveError> {
     let (theme, asked, button) = (station.theme, Instant::now(), ConsentHold::default());
@@ -44,8 +46,8 @@ pub(super) async fn ask_consent(
 }
 
 /// A question to the wizard that has not been answered.
-struct OpenQuestion<'a> {
-    question: &'a StartPrompt,
+struct OpenQuestion {
+    question: StartPrompt,
     on_display: bool,
     /// When the question was asked: the time with which the hold of the page's button is measured begins here.
     asked: Instant,
@@ -56,7 +58,7 @@ struct OpenQuestion<'a> {
     dirty: bool,
 }
 
-impl ConsoleShell for OpenQuestion<'_> {
+impl ConsoleShell for OpenQuestion {
     type Outcome = (StartReply, AnswerDevice);
     type Error = LiveError;
 
@@ -86,7 +88,8 @@ impl ConsoleShell for OpenQuestion<'_> {
         self.dirty = true;
         Ok(match message {
             ConsoleMessage::Key(key) => {
-                self.notice = None;
+                let is_open = key.code == KeyCode::Enter && self.question.chosen.is_none();
+                self.notice = is_open.then_some("choose an answer by its digit, then press enter");
                 self.question.reply(&key).map(|reply| (reply, AnswerDevice::Console))
             }
             ConsoleMessage::Paste(text) => {
@@ -98,7 +101,7 @@ impl ConsoleShell for OpenQuestion<'_> {
     }
 
     fn view(&self) -> ShellView<'_> {
-        ShellView::Question(self.question, self.notice, self.theme)
+        ShellView::Question(&self.question, self.notice, self.theme)
     }
 
     fn drawn(&mut self) {

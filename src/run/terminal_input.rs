@@ -58,6 +58,11 @@ mod reading {
             Ok(TerminalInput { messages, resized, _alive: alive })
         }
 
+        /// The waiting messages from the terminal.
+        pub fn waiting(&mut self) -> Vec<ConsoleMessage> {
+            std::iter::from_fn(|| self.messages.try_recv().ok()).collect()
+        }
+
         /// The next message from the terminal; `None` when the terminal is closed.
         pub async fn next(&mut self) -> Option<ConsoleMessage> {
             tokio::select! {
@@ -128,6 +133,11 @@ mod reading {
             };
             std::thread::Builder::new().name("terminal input".to_string()).spawn(read_all)?;
             Ok(TerminalInput { messages })
+        }
+
+        /// The waiting messages from the terminal.
+        pub fn waiting(&mut self) -> Vec<ConsoleMessage> {
+            std::iter::from_fn(|| self.messages.try_recv().ok()).collect()
         }
 
         /// The next message from the terminal; `None` when the terminal is closed.

@@ -7,7 +7,9 @@ use crate::admit::unless;
 use crate::settings::GazeSource;
 use crate::{Session, TrialPhase};
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::gaze::calibration::{GazeAccuracy, SETTLE_S, TARGET_S, TARGETS, ViewingGeometry, measure};
+use tomcom_core::gaze::calibration::{
+    GazeAccuracy, SETTLE_S, TARGET_S, TARGETS, ViewingGeometry, measure, mistaken_coordinates,
+};
 use tomcom_core::gaze::{GazeSample, MIN_CONFIDENCE};
 
 /// Per target: 1,000 Hz for longer than a target is shown.
@@ -104,6 +106,12 @@ impl RunningGazeCheck {
     pub(crate) fn to_measure(&self, viewing: &ViewingGeometry) -> Option<GazeCheckEvent> {
         let is_due = self.are_hidden && self.result.is_none();
         is_due.then(|| GazeCheckEvent::Measured { found: measure(viewing, &self.targets, &self.samples) })
+    }
+
+    /// How the sender of gaze seems to mean its coordinates, in words, if the gaze is on the targets only when it is read
+    /// so.
+    pub fn mistaken_coordinates(&self, viewing: &ViewingGeometry) -> Option<&'static str> {
+        mistaken_coordinates(viewing, &self.targets, &self.samples)
     }
 
     pub(crate) fn take(&mut self, taken: SessionTime, sample: GazeSample) {

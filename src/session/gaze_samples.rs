@@ -16,6 +16,8 @@ pub struct GazeStatus {
     pub last: Option<(SessionTime, GazeSample)>,
     /// When the last sample inside each location's area was taken: the participant's last look there.
     pub looked_at: [Option<SessionTime>; MAX_LOCATIONS],
+    /// The latest sample, if it is unusable and not faulty: with too low a confidence, or outside of the display.
+    pub latest_unusable: Option<GazeSample>,
     /// Locations in whose areas the latest sample lies, as a bit set; empty if it is faulty or unusable, or was taken
     /// while the kitchen was not on the display.
     pub here: u32,
@@ -61,7 +63,8 @@ pub(crate) fn take_sample(session: &mut Session, now: SessionTime, sample: GazeS
     gaze_check::gaze(session, taken, sample);
     let sample = session.corrected(sample);
     let status = &mut session.gaze;
-    if !sample.is_on_display() || sample.confidence < MIN_CONFIDENCE {
+    status.latest_unusable = (!sample.is_on_display() || sample.confidence < MIN_CONFIDENCE).then_some(sample);
+    if status.latest_unusable.is_some() {
         status.unusable += 1;
         return;
     }

@@ -11,6 +11,7 @@ use tomcom_core::base::text::count;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::calibration::{GOOD_DEG, USABLE_DEG};
 use tomcom_core::gaze::recorded::RecordedGazeSummary;
+use tomcom_core::gaze::{GazeSample, MIN_CONFIDENCE};
 use tomcom_core::mind::model::HumanModel;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -214,16 +215,7 @@ fn gaze(session: &Session, now: SessionTime, rejected: Option<&RejectedGaze>) ->
         Some((_, sample)) => {
             PreflightCheck::ok("gaze quality", format!("gaze is usable, confidence {:.2}", sample.confidence))
         }
-        None => {
-            let found = "no gaze sample is on the display with enough confidence";
-            PreflightCheck::new(
-                "gaze quality",
-                PreflightVerdict::Warning,
-                found,
-                "set up the eye tracker again, or calibrate it; set missing_confidence = \"good\" under [tracker], if it \
-                 knows no confidence",
-            )
-        }
+        None => unusable(session),
     };
     let mut checks = vec![rate, quality];
     if let Some(fault) = session.tracker.stamp_fault {
@@ -236,6 +228,40 @@ fn gaze(session: &Session, now: SessionTime, rejected: Option<&RejectedGaze>) ->
     }
     checks.extend(stream_faults(session));
     checks
+}
+
+/// Coordinates that are farther from the display than this, in fractions of it, are those of another unit.
+const OTHER_UNIT: f64 = 1.0;
+
+/// Why no sample of the last second was usable, told by the latest one.
+fn unusable(session: &Session) -> PreflightCheck {
+    let warning =
+        |found: String, remedy: String| PreflightCheck::new("gaze quality", PreflightVerdict::Warning, found, remedy);
+    let tracker = "set up the eye tracker again, or calibrate it";
+    let Some(GazeSample { x, y, confidence, .. }) = session.gaze.latest_unusable else {
+        let found = "no gaze sample is on the display with enough confidence";
+        return warning(found.to_string(), tracker.to_string());
+    };
+    let (mut found, mut remedies) = (Vec::new(), Vec::new());
+    let source = session.spec.participant.gaze;
+    let is_other_unit = [x, y].iter().any(|value| !(-OTHER_UNIT..=1.0 + OTHER_UNIT).contains(value));
+    let point = format!("{}, {}", (x * 100.0).round() / 100.0, (y * 100.0).round() / 100.0);
+    if is_other_unit && matches!(source, GazeSource::Json | GazeSource::Lsl) {
+        found.push(format!("x, y are {point}; on the display they are 0 to 1"));
+        remedies.push(match source {
+            GazeSource::Lsl => "set unit, size and origin under [lsl.gaze] to those of the stream",
+            _ => "send fractions of the display: pixels by its width and height in pixels, percent by 100",
+        });
+    } else if !(0.0..=1.0).contains(&x) || !(0.0..=1.0).contains(&y) {
+        found.push(format!("x, y are {point}: beside the display, where they are 0 to 1"));
+        remedies.push("let the participant look at the display; check the gaze with targets, or calibrate the tracker");
+    }
+    if confidence < MIN_CONFIDENCE {
+        found.push(format!("the confidence is {confidence:.2}, and must be {MIN_CONFIDENCE} or more"));
+        remedies.push(tracker);
+        remedies.push("set missing_confidence = \"good\" under [tracker], if it knows no confidence");
+    }
+    warning(format!("the last sample is not usable: {}", found.join("; ")), remedies.join("; "))
 }
 
 /// Real gaze streams have some faulty samples; they are ignored, and matter only if there are many.

@@ -40,7 +40,8 @@ impl GatheredRecordings {
     /// several paths lead is there once, and so is a recording whose log equals that of another one or a beginning of
     /// it: the longest counts, but none that is excluded before one that is not. Earlier parts of a recording are read
     /// with the last part. Errors: a path is neither a recording nor a folder with recordings; a recording has no
-    /// readable header; two recordings count for one trial of a plan; the codes of two participants differ in capital
+    /// readable header; two recordings count for one trial of a plan, or a live and a simulated one for
+    /// one participant of it; the codes of two participants differ in capital
     /// letters only; or codes of raters, or a correction, stand beside a copy alone.
     pub fn find(paths: &[PathBuf]) -> FileResult<GatheredRecordings> {
         let mut found = Vec::new();
@@ -130,6 +131,7 @@ impl GatheredRecordings {
                 first = Some(path);
             }
         }
+        check_kinds(&opened, &trials)?;
         let paths = kept.into_iter().map(|index| opened[index].path.clone()).collect();
         let copies = order.iter().filter_map(|index| copies.remove(index)).collect();
         Ok(GatheredRecordings { paths, copies })
@@ -203,6 +205,32 @@ fn folder(log: &Path) -> &Path {
 fn planned_trial(header: &LogHeader) -> Option<PlannedTrialKey> {
     let seed = header.started.is_none().then_some(header.session.seed);
     PlannedTrialKey::new(&RecordedPlan::from_header(header), seed)
+}
+
+/// In a plan, a code is that of a person or of a simulated participant, not of both. `trials`: indices of the recordings of
+/// each trial.
+fn check_kinds(opened: &[FoundRecording], trials: &BTreeMap<&PlannedTrialKey, Vec<usize>>) -> FileResult<()> {
+    let all: Vec<(&PlannedTrialKey, &FoundRecording)> =
+        trials.iter().flat_map(|(trial, found)| found.iter().map(|&index| (*trial, &opened[index]))).collect();
+    // The trials of a code in a plan follow one another, those that were recorded live first.
+    for of_code in all.chunk_by(|(a, _), (b, _)| a.is_of_code_of(b)) {
+        let is_mixed = |one: &(&PlannedTrialKey, &FoundRecording)| one.0.is_mixed_with(of_code[0].0);
+        if !of_code.iter().any(is_mixed) {
+            continue;
+        }
+        let counted = |mixed: bool| {
+            of_code.iter().filter(|one| is_mixed(one) == mixed).find_map(|one| match standing::left_out(&one.1.path) {
+                Ok(Some(_)) => None,
+                Ok(None) => Some(Ok(*one)),
+                Err(error) => Some(Err(error)),
+            })
+        };
+        if let (Some(live), Some(simulated)) = (counted(false).transpose()?, counted(true).transpose()?) {
+            let (found, remedy) = simulated.0.mixed_with(&live.1.path.display().to_string());
+            return Err(FileError::from_finding(&simulated.1.path, found, remedy));
+        }
+    }
+    Ok(())
 }
 
 /// One of them was probably typed wrong, and other programs would make one person of them, or two.

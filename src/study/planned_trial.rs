@@ -2,6 +2,7 @@
 //! without a recording.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
 
@@ -11,25 +12,57 @@ use tomcom_core::base::text::count;
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct PlannedTrialKey {
     plan: String,
-    participant: String,
+    /// Of the participant.
+    code: String,
+    /// Of a simulated participant, since every seed simulates other people.
+    seed: Option<u64>,
     /// Number of the trial, from 1.
     period: u32,
 }
 
 impl PlannedTrialKey {
     /// The trial of a recording with this place in a plan; `None` for practice, and for a recording without a plan.
-    /// `seed`: that of a simulated participant, since every seed simulates other people.
+    /// `seed`: that of a simulated participant.
     pub fn new(recorded: &RecordedPlan, seed: Option<u64>) -> Option<PlannedTrialKey> {
         let (plan, _) = recorded.plan.clone()?;
         let period = recorded.place?.period?;
-        let code = &recorded.participant;
-        let participant = seed.map_or_else(|| code.clone(), |seed| format!("seed{seed}-{code}"));
-        Some(PlannedTrialKey { plan, participant, period })
+        Some(PlannedTrialKey { plan, code: recorded.participant.clone(), seed, period })
+    }
+
+    /// Whether one of these is simulated and the other was recorded live, of one code in one plan: tables would make one
+    /// participant of a person and a simulation.
+    pub(crate) fn is_mixed_with(&self, other: &PlannedTrialKey) -> bool {
+        self.is_of_code_of(other) && self.seed.is_some() != other.seed.is_some()
+    }
+
+    pub(crate) fn is_of_code_of(&self, other: &PlannedTrialKey) -> bool {
+        (&self.plan, &self.code) == (&other.plan, &other.code)
+    }
+
+    /// The first and the last possible trial of this code in this plan.
+    pub(crate) fn of_code(&self) -> RangeInclusive<PlannedTrialKey> {
+        let with = |seed, period| PlannedTrialKey { seed, period, ..self.clone() };
+        with(None, 0)..=with(Some(u64::MAX), u32::MAX)
+    }
+
+    /// What is wrong if the recording `first` is one of [`is_mixed_with`](PlannedTrialKey::is_mixed_with); and what would be
+    /// right.
+    pub(crate) fn mixed_with(&self, first: &str) -> (String, String) {
+        let PlannedTrialKey { plan, code, seed, .. } = self;
+        let [own, others] = match seed {
+            Some(_) => ["a simulated recording", "was recorded live"],
+            None => ["a live recording", "is simulated"],
+        };
+        let found = format!("{own} of {code} in the plan \"{plan}\", beside {first}, which {others}");
+        let remedy = "simulated recordings in a folder of their own; or leave the one or the other out: tomcom exclude FOLDER \
+                      --code CODE --reason …, or RECORDING --reason …";
+        (found, remedy.to_string())
     }
 
     /// What is wrong if `first` is another recording that counts for this trial; and what would be right.
     pub(crate) fn counted_twice(&self, first: &str) -> (String, String) {
-        let PlannedTrialKey { plan, participant, period } = self;
+        let PlannedTrialKey { plan, code, seed, period } = self;
+        let participant = seed.map_or_else(|| code.clone(), |seed| format!("seed{seed}-{code}"));
         let found = format!(
             "a second recording of trial {period} of {participant} in the plan \"{plan}\", which {first} is a recording of, too"
         );

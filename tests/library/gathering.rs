@@ -164,6 +164,15 @@ fn two_recordings_that_count_for_one_trial_are_refused_with_both_names() {
     assert_eq!(number(&both), 2);
     simulated(&second, 3);
     assert!(refusal(&both).contains("a second recording of trial 1 of seed1-P01"));
+    // Tables would make one participant of a person and a simulation with the same code, whichever trials they are.
+    for period in [1, 2] {
+        record(&second, &log, |header| header["session"]["step"]["period"] = json!(period));
+        let told = refusal(&both);
+        assert!(told.contains("a simulated recording of P01 in the plan \"paper\""), "{told}");
+        assert!(told.contains(&format!("beside {}, which was recorded live", second.display())), "{told}");
+    }
+    rule(&second, true, "a rehearsal").expect("excluded");
+    assert_eq!(number(&both), 2);
 }
 
 #[test]

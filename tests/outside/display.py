@@ -389,6 +389,7 @@ def has_phases(tomcom, browser, folder):
         console.wait_for("agrees")
         page = Page(browser, url())
         console.key("1")
+        console.key("\r")
         page.stage("instruction")
         page.screenshot(folder / "instruction-1920.png")
         for _ in range(12):

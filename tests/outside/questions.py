@@ -197,6 +197,7 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         page = Page(browser, url)
         keyboard, click = page.page.keyboard, page.page.click
         console.key("1")
+        console.key("\r")
         page.stage("questionnaire")
         item("colour_vision")
         keyboard.press("0")

@@ -108,6 +108,13 @@ fn operate(terminal: &Terminal, session: &str) {
     terminal.run(&["operate", session, "--code", "A1", "--out", &terminal.recordings()]);
 }
 
+/// Answers a question before a recording: a digit chooses, and enter goes on.
+fn choose(terminal: &Terminal, digit: &str) {
+    terminal.key(digit);
+    terminal.see(&format!("[{digit}]"));
+    terminal.key("Enter");
+}
+
 /// A second console for a participant ends with these words, here without a terminal.
 fn check_second_console(session: &str, out: &str, code: &str, says: &str) {
     let output = tomcom(&["operate", session, "--code", code, "--out", out]);
@@ -120,9 +127,9 @@ fn check_second_console(session: &str, out: &str, code: &str, says: &str) {
 fn check_goes_on_after_a_kill(terminal: &Terminal, session: &str) {
     operate(terminal, session);
     terminal.see("A1: SIMULATED PARTICIPANT");
-    terminal.key("1");
+    choose(terminal, "1");
     terminal.see("A1: trial 1 is not done");
-    terminal.key("1");
+    choose(terminal, "1");
     terminal.see("A1 trial 1/2");
     // The few presses may have been over before the kill, or not.
     terminal.wait("the trial's end", || {
@@ -149,14 +156,18 @@ fn a_participant_goes_through_a_plan_at_the_console_and_over_a_kill() {
     // A person is asked for consent.
     terminal.run(&["operate", &session, "--code", "A1", "--out", &out, "--participant", "keyboard", "--gaze", "none"]);
     terminal.see("and agrees to");
-    terminal.key("2");
+    terminal.key("Enter");
+    terminal.see("choose an answer by its digit");
+    choose(&terminal, "2");
     terminal.is_whole(0);
     terminal.see("A1 does not agree to be recorded: nothing was recorded");
     assert!(!Path::new(&out).exists(), "nothing is recorded without consent");
     // A simulated participant has to be meant, and is asked nothing.
     operate(&terminal, &session);
     terminal.see("A1: SIMULATED PARTICIPANT");
-    terminal.key("2");
+    // In a narrow terminal the name of the folder may be broken.
+    terminal.see("Its recordings go to the folder");
+    choose(&terminal, "2");
     terminal.is_whole(0);
     assert!(!Path::new(&out).exists(), "nothing is recorded of a simulated participant that is not meant");
     operate(&terminal, &session);
@@ -164,7 +175,7 @@ fn a_participant_goes_through_a_plan_at_the_console_and_over_a_kill() {
     // From here on, no other console records this participant; the other one is free.
     check_second_console(&session, &out, "A1", "records A1 of the plan tiny");
     check_second_console(&session, &out, "B2", "the console cannot be opened");
-    terminal.key("1");
+    choose(&terminal, "1");
     terminal.see("Instruction of the participant");
     let plan = first(&session, &out);
     assert_eq!(plan["next"]["is"], "running", "{plan}");
@@ -177,8 +188,11 @@ fn a_participant_goes_through_a_plan_at_the_console_and_over_a_kill() {
     terminal.key("2");
     terminal.see("waive for this reason");
     terminal.key("Enter");
+    terminal.see("in words");
+    terminal.key("Enter");
     terminal.see(". next recording");
-    terminal.key(".");
+    // What is typed while the next recording is prepared is no note in it.
+    terminal.send(".1");
     terminal.see("A1 trial 1/2");
     terminal.key(".");
     terminal.see("questionnaire");
@@ -194,11 +208,42 @@ fn a_participant_goes_through_a_plan_at_the_console_and_over_a_kill() {
     let recordings: Vec<PathBuf> =
         fs::read_dir(&out).expect("recordings").flatten().map(|entry| entry.path()).collect();
     recordings.iter().for_each(|recording| drop(verified(recording)));
-    let debriefs = |recording: &PathBuf| {
-        fs::read_to_string(recording.join(LOG_NAME)).expect("a log").contains("\"phase\":\"debriefing\"")
-    };
+    let says =
+        |recording: &PathBuf, text: &str| fs::read_to_string(recording.join(LOG_NAME)).expect("a log").contains(text);
+    let debriefs = |recording: &PathBuf| says(recording, "\"phase\":\"debriefing\"");
     assert!(recordings.iter().any(debriefs), "the last recording has the debriefing");
+    assert!(!recordings.iter().any(|recording| says(recording, "\"kind\":\"marker\"")), "no note was written");
     operate(&terminal, &session);
     terminal.is_whole(0);
     assert_eq!(fs::read_dir(&out).expect("recordings").count(), 4, "nothing is recorded when everything is done");
+    check_excluded_trial_is_repeated(&terminal, &session, &out);
+}
+
+/// A trial that is excluded after its session is done, and is repeated if the wizard asks for it.
+fn check_excluded_trial_is_repeated(terminal: &Terminal, session: &str, out: &str) {
+    let steps = first(session, out)["steps"].clone();
+    let trial = steps.as_array().expect("steps").last().expect("a trial")["recordings"][0]["recording"].clone();
+    let recording = format!("{out}/{}", trial.as_str().expect("a name"));
+    assert!(tomcom(&["exclude", &recording, "--reason", "lights went out"]).status.success());
+    let told = String::from_utf8_lossy(&tomcom(&["plan", session, "--out", out]).stdout).into_owned();
+    assert!(told.contains("everything is done, 1 excluded: repeat with tomcom operate SESSION --code A1"), "{told}");
+    assert!(told.contains("1 of 2 participants have done everything; 1 participant with an excluded trial"), "{told}");
+    // It is asked for, and left alone.
+    operate(terminal, session);
+    terminal.see("A1: SIMULATED PARTICIPANT");
+    choose(terminal, "1");
+    terminal.see("A1: excluded trials");
+    terminal.see("is excluded: lights went out");
+    choose(terminal, "1");
+    terminal.is_whole(0);
+    assert_eq!(first(session, out)["next"]["is"], "finished");
+    // It is repeated.
+    operate(terminal, session);
+    terminal.see("A1: SIMULATED PARTICIPANT");
+    choose(terminal, "1");
+    terminal.see("2  repeat trial 2");
+    choose(terminal, "2");
+    terminal.see("A1 trial 2/2, attempt 2");
+    terminal.begin();
+    terminal.quit();
 }

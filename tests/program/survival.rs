@@ -284,10 +284,11 @@ fn a_terminal_that_is_fine_is_found_fine() {
 /// The key that goes on in a plan from what is on this screen, if any does.
 fn onward(screen: &str) -> &'static [&'static str] {
     let shows = |text: &str| screen.contains(text);
-    let advances = ["READY", "PAUSED", ". next recording", ". next phase: questionnaire"];
+    let advances = ["READY", "PAUSED", ". next recording", ". end the series", ". next phase: questionnaire"];
     match () {
-        () if shows("enter waive for this reason") => &["Enter"],
-        () if shows("SIMULATED PARTICIPANT") || shows("is not done") || shows("is not met") => &["1"],
+        () if shows("enter save the text") || shows("enter waive for this reason") => &["Enter"],
+        () if shows("SIMULATED PARTICIPANT") || shows("is not done") => &["1", "Enter"],
+        () if shows("is not met") => &["1"],
         () if shows("0 no answer") => &["3", "Enter"],
         () if shows("RUNNING") => &[],
         () if advances.into_iter().any(shows) => &["."],

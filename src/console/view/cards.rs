@@ -4,7 +4,7 @@
 use ratatui::layout::Rect;
 
 use super::dialog::open;
-use super::footer::onward;
+use super::footer::{onward, repeats};
 use super::head;
 use super::paint::Painter;
 use super::regions::PanelAreas;
@@ -12,7 +12,6 @@ use super::theme::TextRole;
 use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
 use crate::console::form::sheet;
-use crate::console::interventions::can_redo;
 use crate::console::key_action::{KeyAction, KeyLayer, ManualAction};
 use crate::console::text_columns::{width, wrap};
 use tomcom_core::base::text::count;
@@ -159,26 +158,20 @@ fn after(session: &Session, model: &ConsoleModel) -> Card {
         facts.push(fact("time marks", format!("without words at {}", clocks.join(", ")), TextRole::Strong));
     }
     let mut keys = Vec::new();
-    let on = onward(session);
+    let on = onward(session, model);
     keys.extend(on.and_then(|on| Some((model.keys.chord_for(&KeyAction::Advance)?, on))));
-    if can_redo(session) {
-        keys.extend(
-            model
-                .keys
-                .chord_for(&KeyAction::Manual(ManualAction::Redo))
-                .map(|key| (key, "repeat the trial".to_string())),
-        );
-    }
-    let exclude = match session.excluded {
-        Some(_) => "include it again",
-        None => "exclude the trial",
+    let repeat =
+        repeats(session).filter(|action| *action != KeyAction::Advance).map(|action| (action, "repeat the trial"));
+    let exclude = KeyAction::Manual(ManualAction::Exclude);
+    // An aborted trial is left out already.
+    let exclude = match (&session.excluded, &session.aborted) {
+        (Some(_), _) => Some((exclude, "include it again")),
+        (None, Some(_)) => None,
+        (None, None) => Some((exclude, "exclude the trial")),
     };
     let note = if session.open_marks.is_empty() { "type note" } else { "word the time marks" };
-    for (action, words) in [
-        (KeyAction::Quit, "close the session"),
-        (KeyAction::Manual(ManualAction::NoteInWords), note),
-        (KeyAction::Manual(ManualAction::Exclude), exclude),
-    ] {
+    let note = (KeyAction::Manual(ManualAction::NoteInWords), note);
+    for (action, words) in repeat.into_iter().chain([(KeyAction::Quit, "close the session"), note]).chain(exclude) {
         keys.extend(model.keys.chord_for(&action).map(|key| (key, words.to_string())));
     }
     Card { title: format!("Trial {}", event_words::trial(session.phase)), facts, keys }
@@ -241,17 +234,17 @@ fn signals(session: &Session, model: &ConsoleModel) -> Vec<Fact> {
 /// Lines of the card about an abort or an exclusion: its reason, what follows from it, and the key that takes it back.
 fn left_out(session: &Session, model: &ConsoleModel) -> Vec<Fact> {
     let mut facts = Vec::new();
-    let mut told = |name: &str, reason: &String, action: ManualAction, does: &str| {
+    let mut told = |name: &str, reason: &String, action: Option<KeyAction>, does: &str| {
         facts.push(fact(name, reason.clone(), TextRole::Strong));
-        let key =
-            model.keys.chord_for(&KeyAction::Manual(action)).map_or(String::new(), |key| format!("; {key} {does}"));
+        let key = action.and_then(|action| model.keys.chord_for(&action));
+        let key = key.map_or(String::new(), |key| format!("; {key} {does}"));
         facts.push(fact("", format!("left out of the analysis{key}"), TextRole::Text));
     };
     if let Some(reason) = &session.aborted {
-        told("aborted", reason, ManualAction::Redo, "repeats the trial");
+        told("aborted", reason, repeats(session), "repeats the trial");
     }
     if let Some(reason) = &session.excluded {
-        told("excluded", reason, ManualAction::Exclude, "includes it again");
+        told("excluded", reason, Some(KeyAction::Manual(ManualAction::Exclude)), "includes it again");
     }
     facts
 }

@@ -11,7 +11,7 @@ use crate::console::chord::KeyChord;
 use crate::console::console_model::{ConsoleModel, Dialog};
 use crate::console::form;
 use crate::console::key_action::{KeyAction, KeyBinding};
-use crate::console::lists::{self, ListCursor, Picker};
+use crate::console::lists::{self, ListCursor, OTHER_REASON, Picker};
 use crate::console::mouse::ClickAction;
 use crate::console::possible::is_possible_behind;
 use crate::console::preflight::{OVERRIDE, all_ok, checks};
@@ -32,7 +32,10 @@ pub fn draw(brush: &mut Painter, screen: Rect, regions: &PanelAreas, session: &S
         Some(Dialog::Calibration) => super::gaze::draw_accuracy_check(brush, screen, session, model),
         Some(Dialog::Note(line)) => note(brush, screen, session, line),
         Some(Dialog::Reason(_, reason, line)) => {
-            let says = "enter without words gives the reason alone. No trial runs: the space bar types a space here.";
+            let says = match reason.as_str() {
+                OTHER_REASON => "Type the reason. No trial runs: the space bar types a space here.",
+                _ => "enter without words gives the reason alone. No trial runs: the space bar types a space here.",
+            };
             input_line(brush, screen, line, (&format!("{reason}: in words"), ""), says);
         }
         Some(Dialog::Answer(line)) => answer(brush, screen, session, line),
@@ -128,6 +131,8 @@ fn report(brush: &mut Painter, screen: Rect, lines: &[String], model: &ConsoleMo
 const COLUMNS: u16 = 76;
 /// Label before the remedy of a failed preflight check.
 const FIX: &str = "fix: ";
+/// Rows around the preflight checks: frame, space, key hints.
+const AROUND_CHECKS: usize = 5;
 /// Column at which the findings of the preflight checks begin.
 const FOUND: u16 = 23;
 
@@ -142,16 +147,18 @@ pub fn preflight(brush: &mut Painter, screen: Rect, session: &Session, model: &C
             check.remedy.as_ref().map_or(Vec::new(), |remedy| wrap(remedy, room.saturating_sub(FIX.len() as u16)))
         })
         .collect();
-    let found: Vec<Vec<String>> = checks.iter().map(|check| wrap(&check.found, room)).collect();
-    let rows = found.iter().chain(&remedies).map(Vec::len).sum::<usize>();
-    let inside = open(brush, screen, (columns, rows as u16 + 5), "Checks before the trial", "space stops the robot");
+    let mut findings: Vec<Vec<String>> = checks.iter().map(|check| wrap(&check.found, room)).collect();
+    let rows_of = |findings: &[Vec<String>]| findings.iter().chain(&remedies).map(Vec::len).sum::<usize>();
+    // On a small screen the end of a long finding gives way to the checks below it.
+    if rows_of(&findings) + AROUND_CHECKS > usize::from(screen.height) {
+        findings = checks.iter().map(|check| vec![check.found.clone()]).collect();
+    }
+    let rows = rows_of(&findings);
+    let size = (columns, (rows + AROUND_CHECKS) as u16);
+    let inside = open(brush, screen, size, "Checks before the trial", "space stops the robot");
     let mut y = inside.y;
-    for ((check, found), remedy) in checks.iter().zip(&found).zip(&remedies) {
-        let role = line(brush, inside, y, check);
-        for words in found {
-            brush.parts(inside.x + FOUND, y, room, &[(words, role)]);
-            y += 1;
-        }
+    for ((check, found), remedy) in checks.iter().zip(&findings).zip(&remedies) {
+        y = line(brush, inside, y, check, found);
         for (row, words) in remedy.iter().enumerate() {
             let fix = if row == 0 { FIX } else { "     " };
             brush.parts(inside.x + FOUND, y, room, &[(fix, TextRole::Quiet), (words, TextRole::Text)]);
@@ -169,8 +176,8 @@ pub fn preflight(brush: &mut Painter, screen: Rect, session: &Session, model: &C
     brush.hints(inside.x + 1, inside.bottom().saturating_sub(1), inside.width.saturating_sub(2), hints);
 }
 
-/// Draws the verdict and the name of a check; returns the style of its finding.
-fn line(brush: &mut Painter, inside: Rect, y: u16, check: &PreflightCheck) -> TextRole {
+/// Draws a check with the lines of what was found; returns the row below.
+fn line(brush: &mut Painter, inside: Rect, y: u16, check: &PreflightCheck, found: &[String]) -> u16 {
     let (word, role) = match check.verdict {
         PreflightVerdict::Ok => ("ok", TextRole::Text),
         PreflightVerdict::Warning => ("warning", TextRole::Strong),
@@ -178,7 +185,12 @@ fn line(brush: &mut Painter, inside: Rect, y: u16, check: &PreflightCheck) -> Te
     };
     brush.parts(inside.x + 1, y, 8, &[(word, role)]);
     brush.parts(inside.x + 10, y, FOUND - 11, &[(&check.name, TextRole::Text)]);
-    role
+    let x = inside.x + FOUND;
+    let rows = y..y + found.len().max(1) as u16;
+    for (y, words) in rows.clone().zip(found) {
+        brush.parts(x, y, inside.right().saturating_sub(x + 1), &[(words, role)]);
+    }
+    rows.end
 }
 
 pub fn note(brush: &mut Painter, screen: Rect, session: &Session, text: &TextInput) {
@@ -243,6 +255,8 @@ pub(super) const TYPE: &str = "type to filter (no spaces): ";
 
 /// A row of a list: text, remark at the right, and whether choosing the row has an effect now.
 struct Row {
+    /// The digit that chooses the row, or room for it; empty in lists without numbers.
+    number: String,
     label: String,
     remark: String,
     counts: bool,
@@ -255,16 +269,40 @@ struct ListPage<'a> {
     rows: Vec<Row>,
     /// Number of rows of the list before filtering.
     all: usize,
+    /// What typing does.
+    types: &'a str,
+    /// Keys that select a row.
+    selects: &'a str,
     space: &'a str,
     takes: &'a str,
 }
 
 pub fn draw_answers(brush: &mut Painter, screen: Rect, session: &Session, picker: &Picker) {
-    let rows = picker.choices(session).into_iter();
-    let rows = rows.map(|choice| Row { label: choice.label, remark: choice.remark, counts: true }).collect();
+    // Digits that are typed after a letter are part of the filter.
+    let (takes_words, is_filtered) = (picker.takes_words(session), !picker.cursor.filter.is_empty());
+    let number = |index: usize| match index {
+        0..9 if !is_filtered => format!("{} ", index + 1),
+        _ => "  ".to_string(),
+    };
+    let rows: Vec<Row> = picker
+        .choices(session)
+        .into_iter()
+        .enumerate()
+        .map(|(index, choice)| Row { number: number(index), label: choice.label, remark: choice.remark, counts: true })
+        .collect();
     let all = Picker::new(picker.kind).choices(session).len();
-    let title = picker.title(session);
-    ListPage { title, cursor: &picker.cursor, rows, all, space: STOPS, takes: "choose" }.draw(brush, screen);
+    let digits = format!("1-{}, up/down", all.clamp(1, 9));
+    ListPage {
+        title: picker.title(session),
+        cursor: &picker.cursor,
+        rows,
+        all,
+        types: if takes_words { "type to filter, or a reason in words: " } else { TYPE },
+        selects: if is_filtered { "up/down" } else { &digits },
+        space: if takes_words && is_filtered { "space types a space" } else { STOPS },
+        takes: if takes_words { "choose; words can follow" } else { "choose" },
+    }
+    .draw(brush, screen);
 }
 
 /// Text for what the space bar does in a list of a live session.
@@ -275,6 +313,7 @@ pub fn draw_palette(brush: &mut Painter, screen: Rect, session: &Session, model:
     let row = |line: &&KeyBinding| {
         let key = line.chords.first().map_or(String::new(), KeyChord::to_string);
         Row {
+            number: String::new(),
             label: format!("{key:>7}  {}", line.help),
             remark: line.group.to_string(),
             counts: is_possible_behind(session, model, &line.action),
@@ -286,7 +325,7 @@ pub fn draw_palette(brush: &mut Painter, screen: Rect, session: &Session, model:
     let takes = if has_signals { "run action (signal: show key)" } else { "run the action" };
     let space = if model.playback.is_none() { STOPS } else { "" };
     let title = "All actions".to_string();
-    ListPage { title, cursor, rows, all: all.len(), space, takes }.draw(brush, screen);
+    ListPage { title, cursor, rows, all: all.len(), types: TYPE, selects: "up/down", space, takes }.draw(brush, screen);
 }
 
 impl ListPage<'_> {
@@ -297,7 +336,7 @@ impl ListPage<'_> {
         let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
         let typed = format!("{}_", self.cursor.filter);
         let found = format!("{} of {}", self.rows.len(), self.all);
-        brush.parts(x, inside.y, columns, &[(TYPE, TextRole::Quiet), (&typed, TextRole::Strong)]);
+        brush.parts(x, inside.y, columns, &[(self.types, TextRole::Quiet), (&typed, TextRole::Strong)]);
         let quiet = brush.style(TextRole::Quiet);
         brush.text_right(x + columns, inside.y, 12, &found, quiet);
         let list = Rect { x, y: inside.y + 2, width: columns, height: inside.height.saturating_sub(4) };
@@ -312,7 +351,7 @@ impl ListPage<'_> {
             brush.text(list.x, list.y, list.width, "no entry matches; bksp deletes a letter", quiet);
         }
         let [enter, esc] = [KeyCode::Enter, KeyCode::Esc].map(|code| Some(KeyChord::plain(code)));
-        let hints = [("up/down", "select", None), ("enter", self.takes, enter), ("esc", "back", esc)];
+        let hints = [(self.selects, "select", None), ("enter", self.takes, enter), ("esc", "back", esc)];
         brush.hints(x, inside.bottom().saturating_sub(1), columns, &hints);
     }
 }
@@ -327,7 +366,12 @@ impl Row {
         };
         let remark = width(&self.remark).min(cells.width / 2);
         let label = cells.width.saturating_sub(remark + 3);
-        let parts = [(cursor, TextRole::Signal), (" ", role), (self.label.as_str(), role)];
+        let parts = [
+            (cursor, TextRole::Signal),
+            (" ", role),
+            (self.number.as_str(), TextRole::Signal),
+            (self.label.as_str(), role),
+        ];
         brush.parts(cells.x, cells.y, label + 2, &parts);
         let quiet = brush.style(TextRole::Quiet);
         brush.text_right(cells.right(), cells.y, remark, &self.remark, quiet);

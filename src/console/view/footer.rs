@@ -184,13 +184,23 @@ fn is_over(session: &Session, model: &ConsoleModel) -> bool {
     model.playback.is_none() && matches!(session.phase, TrialPhase::Over(_) | TrialPhase::Closed)
 }
 
-/// The next step of the study plan after a trial, in words.
-pub(super) fn onward(session: &Session) -> Option<String> {
-    session.protocol.as_ref().filter(|_| session.phase != TrialPhase::Closed)?;
+/// The next step of the study plan, in words.
+pub(super) fn onward(session: &Session, model: &ConsoleModel) -> Option<String> {
+    let (step, _) = session.step().filter(|_| session.phase != TrialPhase::Closed)?;
     Some(match session.next_phase() {
         _ if session.aborted.is_some() => "repeat the trial".to_string(),
         Some(phase) => format!("next phase: {}", phase.name()),
+        None if step.is_tutorial_alone() => "leave the tutorial".to_string(),
+        None if model.is_last_recording => "end the series".to_string(),
         None => "next recording".to_string(),
+    })
+}
+
+/// The key that repeats an aborted or excluded trial: after an aborted one of a plan, the one that goes on.
+pub(super) fn repeats(session: &Session) -> Option<KeyAction> {
+    can_redo(session).then_some(match session.aborted.is_some() && session.protocol.is_some() {
+        true => KeyAction::Advance,
+        false => KeyAction::Manual(ManualAction::Redo),
     })
 }
 
@@ -204,7 +214,9 @@ fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -
     let plays = model.playback.as_ref().is_some_and(|playback| playback.playing);
     let is_over = is_over(session, model);
     let word = match binding.action {
-        KeyAction::Manual(ManualAction::Redo) => can_redo(session).then_some("repeat the trial"),
+        KeyAction::Manual(ManualAction::Redo) => {
+            (repeats(session).as_ref() == Some(&binding.action)).then_some("repeat the trial")
+        }
         KeyAction::Advance if model.lesson.is_some() => {
             let begun = model.lesson.as_ref().is_some_and(|lesson| lesson.begun);
             Some(if plays {
@@ -215,7 +227,7 @@ fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -
                 "start"
             })
         }
-        KeyAction::Advance if is_over => return onward(session).map(Cow::Owned),
+        KeyAction::Advance if is_over => return onward(session, model).map(Cow::Owned),
         KeyAction::Advance => match session.phase {
             TrialPhase::Running => Some("pause"),
             TrialPhase::Paused => Some("resume"),

@@ -282,6 +282,10 @@ pub fn draw_accuracy_check(brush: &mut Painter, screen: Rect, session: &Session,
     );
     line(brush, "precision", &format!("{:.2} deg (RMS between samples)", found.precision_deg), TextRole::Text);
     line(brush, "targets", &accuracy_at_targets(found), TextRole::Text);
+    let mistaken = session.calibration.as_ref().and_then(|check| check.mistaken_coordinates(&session.viewing()));
+    if let Some(words) = mistaken {
+        line(brush, "fix", &format!("{words}, it seems: change what the sender sends"), TextRole::Alarm);
+    }
     let taken = chosen(model, Some(found));
     let rows = [
         (CORRECTED, "accept the gaze with its offset subtracted", AccuracyCheckAction::Corrected),

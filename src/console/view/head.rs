@@ -130,9 +130,10 @@ fn stage_mark(brush: &Painter, phase: TrialPhase) -> (String, Style) {
     }
 }
 
-/// Sender of signals in this condition, in a word: "unassisted", "assistant", "wizard".
+/// Sender of signals in this condition: "unassisted", "assistant", "wizard"; in a plan its arm, "wizard with advice".
 pub(super) fn condition(session: &Session) -> &'static str {
     match session.spec.trial.condition {
+        _ if session.step().is_some() => session.study_arm().title(),
         Condition::None => "unassisted",
         Condition::Assistant => "assistant",
         Condition::Wizard => "wizard",

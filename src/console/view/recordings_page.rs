@@ -65,7 +65,7 @@ fn draw(brush: &mut Painter, picker: &RecordingPicker) {
         brush.text(list.x, list.y, list.width, "no recording matches; bksp deletes a letter", quiet);
     }
     let [enter, esc] = [KeyCode::Enter, KeyCode::Esc].map(|code| Some(KeyChord::plain(code)));
-    let hints = [("up/down", "select", None), ("enter", "open", enter), ("esc", "back", esc)];
+    let hints = [("up/down", "select", None), ("enter", picker.does, enter), ("esc", "back", esc)];
     brush.hints(x, inside.bottom().saturating_sub(1), columns, &hints);
 }
 

@@ -6,6 +6,7 @@ use ratatui::Frame;
 use ratatui::layout::Rect;
 
 use super::dialog::{blank, open};
+use super::footer;
 use super::paint::{KeyHint, Painter};
 use super::theme::{TextRole, Theme};
 use crate::console::beliefs::visibility;
@@ -38,7 +39,9 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
     let where_ = format!("{}  {}", session.spec.participant.code, step.label());
     match sheet {
         FormContent::Probe(_) => {}
-        FormContent::Steps { title, steps } => draw_steps(pen, screen, (title, &where_), steps, protocol, session),
+        FormContent::Steps { title, steps } => {
+            draw_steps(pen, screen, (title, &where_), steps, protocol, (session, model))
+        }
         FormContent::Tutorial(tutorial) => draw_tutorial(pen, screen, &where_, tutorial, (session, model)),
         FormContent::Questions(questionnaire) => {
             draw_questions(pen, screen, &where_, questionnaire, protocol, (session, model))
@@ -48,12 +51,8 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
 }
 
 /// Label of the key that leaves the sheet: the name of the next phase.
-fn onward(session: &Session) -> String {
-    match session.next_phase() {
-        Some(phase) => format!("next phase: {}", phase.name()),
-        None if session.step().is_some_and(|(step, _)| step.is_tutorial_alone()) => "leave the tutorial".to_string(),
-        None => "next recording".to_string(),
-    }
+fn onward(session: &Session, model: &ConsoleModel) -> String {
+    footer::onward(session, model).unwrap_or_default()
 }
 
 fn draw_steps(
@@ -62,7 +61,7 @@ fn draw_steps(
     heads: (&str, &str),
     steps: &[String],
     protocol: &StudyProtocolState,
-    session: &Session,
+    (session, model): (&Session, &ConsoleModel),
 ) {
     let mut page = Page::new(screen);
     let open = protocol.ticks.iter().position(|done| !done);
@@ -83,7 +82,7 @@ fn draw_steps(
     if open.is_none() {
         page.focus_here();
     }
-    let on = if open.is_some() { "tick this step as done".to_string() } else { onward(session) };
+    let on = if open.is_some() { "tick this step as done".to_string() } else { onward(session, model) };
     let mut hints = vec![("enter", on.as_str(), plain(KeyCode::Enter))];
     if protocol.ticks.contains(&true) {
         hints.push(("bksp", "untick the last step", plain(KeyCode::Backspace)));
@@ -127,7 +126,7 @@ fn draw_tutorial(
         };
         page.marked(mark, &format!("{}{more}", step.title), role);
     }
-    let on = onward(session);
+    let on = onward(session, model);
     let over = [("enter", on.as_str(), plain(KeyCode::Enter))];
     let skip = ("0", "ends the tutorial", Some(KeyChord::char('0')));
     let (back, next) =
@@ -193,7 +192,7 @@ fn draw_questions(
     }
     page.focus_here();
     let on = match (protocol.confirmed, protocol.open_item()) {
-        (true, _) => onward(session),
+        (true, _) => onward(session, model),
         (false, Some(_)) => "go to the item without an answer".to_string(),
         (false, None) => "confirm the answers".to_string(),
     };
@@ -286,9 +285,10 @@ fn draw_failed(pen: &mut Pen, screen: Rect, where_: &str, session: &Session, wai
     let hints = [
         ("enter", if waiver.is_some() { "waive for this reason" } else { "practise again" }, plain(KeyCode::Enter)),
         (waivers.as_str(), "choose a reason", None),
-        ("left", "deselect the reason", plain(KeyCode::Left)),
+        ("letters", "its words", None),
+        ("bksp", "no reason", plain(KeyCode::Backspace)),
     ];
-    let hints = if waiver.is_some() { &hints } else { &hints[..2] };
+    let hints = if waiver.is_some() { &hints } else { &hints[..3] };
     page.draw(pen, screen, "The practice criterion is not met", where_, hints);
 }
 
@@ -302,14 +302,21 @@ pub fn draw_question(question: &StartPrompt, notice: Option<&str>, theme: Theme,
         page.space();
     }
     for (index, answer) in question.answers.iter().enumerate() {
-        page.marked(&format!("  {}", index + 1), answer, TextRole::Strong);
+        let is_chosen = question.chosen == Some(index);
+        let mark = if is_chosen { format!(" [{}]", index + 1) } else { format!("  {} ", index + 1) };
+        page.marked(&mark, answer, if is_chosen { TextRole::Strong } else { TextRole::Text });
     }
     page.focus_here();
     if let Some(notice) = notice {
         page.space();
         page.text(0, notice, TextRole::Alarm);
     }
-    let keys = [("esc", "quit without recording", plain(KeyCode::Esc))];
+    let digits = format!("1-{}", question.answers.len());
+    let keys = [
+        (digits.as_str(), "choose", None),
+        ("enter", "go on", plain(KeyCode::Enter)),
+        ("esc", "quit without recording", plain(KeyCode::Esc)),
+    ];
     page.draw(&mut Pen { brush: &mut brush, with_keys: true }, screen, &question.title, "", &keys);
 }
 

@@ -115,6 +115,39 @@ pub fn measure(viewing: &ViewingGeometry, targets: &[[f64; 2]], samples: &[Vec<G
     })
 }
 
+/// Ways in which a sender may mean its coordinates, in words, and the point of the display that is then looked at.
+type Reading = (&'static str, fn([f64; 2]) -> [f64; 2]);
+const READINGS: [Reading; 5] = [
+    ("x and y are swapped", |[x, y]| [y, x]),
+    ("y counts from the bottom", |[x, y]| [x, 1.0 - y]),
+    ("x counts from the right", |[x, y]| [1.0 - x, y]),
+    ("x and y count from the centre", |[x, y]| [x + 0.5, y + 0.5]),
+    ("x and y are in percent", |[x, y]| [x / 100.0, y / 100.0]),
+];
+
+/// How the sender seems to mean its coordinates, in words, if the gaze is on the targets only when it is read so.
+/// `samples`: as for [`measure`].
+pub fn mistaken_coordinates(
+    viewing: &ViewingGeometry,
+    targets: &[[f64; 2]],
+    samples: &[Vec<GazeSample>],
+) -> Option<&'static str> {
+    let off_deg = |read: fn([f64; 2]) -> [f64; 2]| {
+        let read = |sample: &GazeSample| {
+            let [x, y] = read([sample.x, sample.y]);
+            GazeSample { x, y, ..*sample }
+        };
+        let samples: Vec<Vec<GazeSample>> = samples.iter().map(|samples| samples.iter().map(read).collect()).collect();
+        measure(viewing, targets, &samples).map(|found| found.accuracy_deg)
+    };
+    if off_deg(|point| point)? <= USABLE_DEG {
+        return None;
+    }
+    let tried = READINGS.iter().filter_map(|(words, read)| Some((off_deg(*read)?, *words)));
+    let best = tried.min_by(|(a, _), (b, _)| a.total_cmp(b));
+    best.filter(|(deg, _)| *deg <= USABLE_DEG).map(|(_, words)| words)
+}
+
 /// Rounds to three decimals: a gaze accuracy check is not more precise.
 fn thousandths(value: f64) -> f64 {
     (value * 1e3).round() / 1e3

@@ -92,10 +92,11 @@ pub(in crate::run) async fn run(
     // If the wizard did not leave by a key, the program was told to end, or the console failed. The recording is closed
     // and the robot stops in any case.
     let leaving = left.as_ref().ok().copied().flatten().unwrap_or(LeavingReason::Quit);
+    let told = if leaving == LeavingReason::Quit { Ok(()) } else { live.tell_next(station) };
     station.tracker.keep(live.engine.session().calibrated.clone());
     let end = live.close(leaving);
     station.tracker.finish_requests().await;
-    left.and(end)
+    left.and(told).and(end)
 }
 
 impl ConsoleShell for Live {
@@ -158,7 +159,8 @@ impl ConsoleShell for Live {
 
 impl Live {
     fn open(begun: PreparedSession, station: &mut OperatorStation) -> Result<Live, LiveError> {
-        let PreparedSession { engine, mut header, first, consent, time, compare, place, participants_done } = begun;
+        let PreparedSession { engine, mut header, first, consent, time, compare, place, participants_done, is_last } =
+            begun;
         let (kitchen, spec) = (engine.session().kitchen.clone(), engine.session().spec.clone());
         let keys = KeyBindings::live(&kitchen, &spec, &key_map(header.keys.as_ref())?)?;
         let keys = if compare.is_some() { keys.with_comparison() } else { keys };
@@ -174,6 +176,7 @@ impl Live {
         model.recording = RecordingStatus::On(log.folder().display().to_string());
         model.comparison = compare.as_ref().map(|_| SenderComparisonView::default());
         model.participants_done = participants_done;
+        model.is_last_recording = is_last;
         let comparison = compare.as_ref().map(|request| {
             let session = Session::new(kitchen.clone(), spec.clone(), header.trial);
             SenderComparisonFollower::new(session, CostToGo::new(kitchen.clone()), request)
@@ -266,6 +269,15 @@ impl Live {
         if let Some(phase) = first {
             self.input(Event::Protocol(ProtocolEvent::PhaseStarted { phase, number: 1 }));
         }
+    }
+
+    /// Says that the next recording is being prepared, which can take a second: keys are not taken meanwhile.
+    fn tell_next(&mut self, station: &mut OperatorStation) -> Result<(), LiveError> {
+        if !self.model.is_last_recording {
+            self.model.say(NoticeLevel::Done, "the next recording is being prepared: wait for its first screen");
+            station.screen.draw(self.engine.session(), &self.model).map_err(TerminalError)?;
+        }
+        Ok(())
     }
 
     fn name(&self) -> String {

@@ -126,6 +126,19 @@ fn rulings(folder: &Path) -> FileResult<Rulings> {
     read_decisions(&folder.join(EXCLUSION_NAME), remedy)
 }
 
+/// Whether the recording is excluded, at the console or by a later ruling. The log is read to its end.
+pub fn is_excluded(log: &mut LogReader) -> FileResult<bool> {
+    let mut is_excluded = false;
+    while let Some(line) = log.next_line()? {
+        match line.stamped.event {
+            Event::TrialExcluded { .. } => is_excluded = true,
+            Event::TrialIncluded => is_excluded = false,
+            _ => {}
+        }
+    }
+    Ok(ruling(log.folder())?.map_or(is_excluded, |ruling| ruling.excluded))
+}
+
 /// Records whether analyses count a closed recording. It is an error if the recording is being written or is continued
 /// by a later part, or if it is to be included although it is not excluded.
 pub fn rule(recording: &Path, excluded: bool, reason: &str) -> Result<ExclusionRecord, DecisionError> {
@@ -135,19 +148,9 @@ pub fn rule(recording: &Path, excluded: bool, reason: &str) -> Result<ExclusionR
     let _lock = RecordingLock::take(folder)?;
     check_last_part(folder)?;
     let mut all = rulings(folder)?;
-    if !excluded {
-        let mut is_excluded = false;
-        while let Some(line) = log.next_line()? {
-            match line.stamped.event {
-                Event::TrialExcluded { .. } => is_excluded = true,
-                Event::TrialIncluded => is_excluded = false,
-                _ => {}
-            }
-        }
-        if !all.ruling.last().map_or(is_excluded, |ruling| ruling.excluded) {
-            let found = format!("no exclusion of {}", recording.display());
-            return Err(DecisionError::Unfit { found, remedy: "a recording that is excluded".to_string() });
-        }
+    if !excluded && !is_excluded(&mut log)? {
+        let found = format!("no exclusion of {}", recording.display());
+        return Err(DecisionError::Unfit { found, remedy: "a recording that is excluded".to_string() });
     }
     let ruling = ExclusionRecord { excluded, reason: reason.to_string(), at: WallTime::now().rfc3339() };
     all.ruling.push(ruling.clone());

@@ -421,6 +421,13 @@ impl ParticipantProgress {
         }
     }
 
+    /// The trials that are done, but with a recording that is excluded, and that recording: they are repeated only if the
+    /// experimenter asks for it.
+    pub fn excluded(&self) -> impl Iterator<Item = (usize, &TrialAttempt)> {
+        let last = self.steps.iter().enumerate().filter_map(|(slot, stand)| Some((slot, stand.recordings.last()?)));
+        last.filter(|(_, last)| matches!(last.outcome, RecordingOutcome::Excluded { .. }))
+    }
+
     /// Number of completed trials.
     pub fn done(&self) -> usize {
         self.steps.iter().filter(|stand| stand.is_done).count()

@@ -203,6 +203,10 @@ impl JoinedRecordings {
             if let Some(first) = self.trials.get(&trial) {
                 return wrong(trial.counted_twice(first));
             }
+            if let Some((_, first)) = self.trials.range(trial.of_code()).find(|(other, _)| other.is_mixed_with(&trial))
+            {
+                return wrong(trial.mixed_with(first));
+            }
             self.trials.insert(trial, place.clone());
         }
         let is_new = self.names.insert(recording.recording.clone());

@@ -7,7 +7,7 @@ use tomcom::console::console_model::{Playback, ReplayAction};
 use tomcom::console::kitchen_map::KitchenMap;
 use tomcom::console::kitchen_map::KitchenMapElement;
 use tomcom::console::lists::Picker;
-use tomcom::console::lists::PickerKind;
+use tomcom::console::lists::{PickerKind, ReasonFor};
 use tomcom::console::view::click_targets;
 use tomcom::console::view::regions::PanelAreas;
 use tomcom::console::{ConsoleCommand, ConsoleMessage, KeyBindings, KeyFileBindings, mouse, update};
@@ -163,7 +163,7 @@ fn hints_buttons_of_the_participant_and_beliefs_are_clicked() {
 #[test]
 fn a_row_is_gone_to_by_a_click_and_taken_by_the_next() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    stage.model.dialog = Some(Dialog::Pick(Picker::new(PickerKind::Abort)));
+    stage.model.dialog = Some(Dialog::Pick(Picker::new(PickerKind::Reason(ReasonFor::Abort))));
     assert_eq!(stage.click("technical failure"), None);
     assert!(matches!(&stage.model.dialog, Some(Dialog::Pick(picker)) if picker.cursor.at == 1));
     let aborted = Event::TrialAborted { reason: "technical failure".to_string() };

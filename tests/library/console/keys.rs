@@ -296,15 +296,15 @@ fn the_kitchen_is_corrected_from_two_lists() {
     stage.shows_everywhere(&[
         "Correct the kitchen: which place?",
         "8 of 8",
-        "» human hand",
-        "robot hand",
+        "» 1 human hand",
+        "2 robot hand",
         "raw salmon",
     ]);
     check_snapshot("console", "correct_80x24", stage.screen((80, 24)));
     type_in(&mut stage, "pot");
     stage.wait(0.05);
     assert_eq!(stage.key(KeyCode::Enter), None);
-    let contents = ["What is really at cooking pot?", "14 of 14", "» raw rice", "cut crab", "enter choose"];
+    let contents = ["What is really at cooking pot?", "14 of 14", "» 1 raw rice", "cut crab", "enter choose"];
     stage.shows((80, 24), &contents);
     for _ in 0..20 {
         stage.wait(0.03);

@@ -174,7 +174,7 @@ fn a_typed_code_leaves_its_own_recordings() {
     });
     let headings =
         RecordingList::HEADINGS.into_iter().filter(|heading| *heading != "errors").map(str::to_string).collect();
-    let mut picker = RecordingPicker::new("Which recording?".to_string(), headings, rows.collect());
+    let mut picker = RecordingPicker::new("Which recording?".to_string(), headings, rows.collect(), "replay");
     for (typed, code) in [("p21", "P21"), ("p07", "P07"), ("P1", "P10"), ("p07 wizard", "P07")] {
         picker.cursor = ListCursor { filter: typed.to_string(), at: 0 };
         let left = picker.left();
@@ -219,7 +219,7 @@ fn picker() -> RecordingPicker {
         row("P07", "wizard", "person", "ended early", "2026-03-14-P07-2"),
         row("P07", "unassisted", "practice", "whole", "2026-03-14-P07-1"),
     ];
-    RecordingPicker::new("Which recording of sessions?".to_string(), headings, rows)
+    RecordingPicker::new("Which recording of sessions?".to_string(), headings, rows, "exclude")
 }
 
 fn press(picker: &mut RecordingPicker, code: KeyCode) -> Option<RecordingReply> {

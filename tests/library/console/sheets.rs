@@ -1,10 +1,13 @@
 //! The sheets around and in a trial: instruction, questionnaire, debriefing, tutorial, freeze probes.
 
 use crossterm::event::KeyCode;
+use tomcom::console::console_model::Dialog;
 use tomcom::console::form::{FormContent, sheet};
+use tomcom::console::lists::ReasonFor;
 use tomcom::console::preflight::ParticipantDisplayHealth;
 use tomcom::console::preflight::checks;
 use tomcom::console::probe_keys::status;
+use tomcom::console::text_input::TextInput;
 use tomcom::console::{ConsoleCommand, KeyBindings, KeyFileBindings};
 use tomcom_session::files::parse::parse;
 use tomcom_session::plan::{PhaseSpec, QuestionnaireSpec, TutorialStepKind};
@@ -505,6 +508,8 @@ fn a_probe_is_asked_for_paused_and_skipped() {
     stage.shows((80, 24), &["Skip the rest of probe 1: why?"]);
     stage.wait(1.0);
     let reason = stage.session.spec.console.reasons[0].clone();
+    assert_eq!(stage.key(KeyCode::Enter), None, "words can follow");
+    stage.wait(1.0);
     assert_eq!(input(stage.key(KeyCode::Enter)), Some(Event::Probe(ProbeEvent::Skipped { probe: 1, reason })));
     stage.probe(75.0, ProbeEvent::Closed { probe: 1, reason: ProbeEndReason::Skipped });
     stage.shows((80, 24), &["after the count-down"]);
@@ -521,10 +526,112 @@ fn a_list_of_reasons_is_closed_with_its_probe() {
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Delete), None);
     stage.shows((120, 40), &["Skip the rest of probe 1: why?"]);
+    let (probe, field) = (stage.session.clone(), {
+        let mut words = stage.model.clone();
+        words.dialog = Some(Dialog::Reason(ReasonFor::SkipProbe(1), "interrupted".to_string(), TextInput::default()));
+        words
+    });
     stage.probe(90.0, ProbeEvent::Closed { probe: 1, reason: ProbeEndReason::TimeOver });
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Enter), None);
     stage.hides((120, 40), &["why?"]);
+    // So is the field for the words of a reason.
+    (stage.session, stage.model) = (probe, field);
+    stage.shows((120, 40), &["interrupted: in words"]);
+    stage.probe(90.0, ProbeEvent::Closed { probe: 1, reason: ProbeEndReason::TimeOver });
+    stage.wait(1.0);
+    assert_eq!(stage.key(KeyCode::Enter), None);
+    stage.hides((120, 40), &["in words"]);
+}
+
+/// A practice whose criterion is not met.
+fn failed_practice() -> Stage {
+    let mut stage = planned(0, true);
+    stage.at(0.0, Event::TrialStarted);
+    stage.at(9.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
+    let checked = ProtocolEvent::CriterionChecked { met: false, orders: 0, presses: 0, errors: 0 };
+    stage.at(9.0, Event::Protocol(checked));
+    stage
+}
+
+#[test]
+fn a_practice_criterion_is_waived_for_a_preset_reason_or_in_words() {
+    let waived = |command| match input(command) {
+        Some(Event::Protocol(ProtocolEvent::CriterionWaived { reason })) => reason,
+        other => panic!("{other:?}"),
+    };
+    let mut stage = failed_practice();
+    stage.shows_everywhere(&["enter practise again", "1-4 choose a reason", "letters its words", "other reason"]);
+    assert_eq!(stage.key(KeyCode::Enter), Some(ConsoleCommand::Next), "without a reason it is practised again");
+    let mut stage = failed_practice();
+    stage.wait(1.0);
+    assert_eq!(stage.key(KeyCode::Char('2')), None);
+    stage.shows_everywhere(&["[2] no time", "enter waive for this reason"]);
+    assert_eq!(stage.key(KeyCode::Enter), None);
+    stage.shows_everywhere(&["no time for more practice: in words"]);
+    stage.wait(1.0);
+    assert_eq!(waived(stage.key(KeyCode::Enter)), "no time for more practice");
+    // Letters begin the words of another reason, which needs them.
+    let mut stage = failed_practice();
+    stage.wait(1.0);
+    write(&mut stage, "He is a cook");
+    stage.wait(1.0);
+    assert_eq!(waived(stage.key(KeyCode::Enter)), "other reason: He is a cook");
+    let mut stage = failed_practice();
+    stage.wait(1.0);
+    stage.key(KeyCode::Char('4'));
+    stage.key(KeyCode::Enter);
+    stage.wait(1.0);
+    assert_eq!(stage.key(KeyCode::Enter), None);
+    assert!(stage.notice().contains("another reason needs words"), "{}", stage.notice());
+    stage.key(KeyCode::Esc);
+    stage.shows_everywhere(&["enter practise again"]);
+}
+
+#[test]
+fn after_a_trial_of_a_plan_a_digit_is_no_note_and_the_keys_name_what_follows() {
+    let mut stage = planned(2, true);
+    stage.at(0.0, Event::TrialStarted);
+    stage.wait(1.0);
+    assert!(matches!(input(stage.key(KeyCode::Char('3'))), Some(Event::Marker { .. })), "in the trial it is one");
+    let mut aborted = planned(2, true);
+    aborted.at(0.0, Event::TrialStarted);
+    stage.at(9.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
+    stage.shows_everywhere(&[". next phase: questionnaire"]);
+    stage.wait(1.0);
+    assert_eq!(stage.key(KeyCode::Char('3')), None);
+    assert!(stage.notice().contains("a digit is no note"), "{}", stage.notice());
+    assert!(!stage.screen((120, 40)).contains("1-5 note"));
+    // The key that goes on repeats an aborted trial, which is left out already.
+    aborted.at(9.0, Event::TrialPaused);
+    aborted.at(9.0, Event::TrialAborted { reason: "interrupted".to_string() });
+    let screen = aborted.shows((120, 40), &["left out of the analysis; . repeats the trial", ". repeat the trial"]);
+    assert!(!screen.contains("^n") && !screen.contains("exclude the trial"), "{screen}");
+    aborted.wait(1.0);
+    assert_eq!(aborted.control('l'), None);
+    assert!(aborted.notice().contains("left out already"), "{}", aborted.notice());
+    // The last key of the series does not promise another recording.
+    let mut practice = failed_practice();
+    practice.at(9.0, Event::Protocol(ProtocolEvent::CriterionWaived { reason: "no time".to_string() }));
+    practice.shows((120, 40), &[". next recording"]);
+    practice.model.is_last_recording = true;
+    practice.shows((120, 40), &[". end the series"]);
+}
+
+#[test]
+fn a_console_names_the_arm_of_the_plan() {
+    let mut files = session_file("study");
+    let plan = files.spec.plan.as_mut().expect("a plan");
+    plan.conditions = vec![StudyArm::None, StudyArm::WizardWithAdvice];
+    let study = files.study().expect("a plan");
+    let slot = study.slots(0).iter().position(|slot| slot.condition == StudyArm::WizardWithAdvice).expect("a trial");
+    let (spec, _) = study.settings(WantedRecording { participant: 0, slot, attempt: 1, instructed: true });
+    let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
+    stage.session = Session::new(kitchen("sushi"), spec, 0);
+    stage.next_phase();
+    stage.shows((120, 40), &["/2, wizard with advice"]);
+    stage.at(0.0, Event::TrialStarted);
+    stage.shows((120, 40), &["/2 wizard with advice"]);
 }
 
 #[test]

@@ -1,9 +1,10 @@
 //! A trial at the console: the checks before it, started, paused, aborted, excluded; and the check of the gaze.
 
-use crossterm::event::KeyCode;
+use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use tomcom::console::ConsoleCommand;
 use tomcom::console::console_model::{Dialog, LslStatus};
 use tomcom::console::gaze_check::AccuracyCheckAction;
+use tomcom::console::lists::{StartPrompt, StartReply};
 use tomcom::console::preflight::ParticipantDisplayHealth;
 use tomcom::console::preflight::checks;
 use tomcom_core::gaze::calibration::{GazeAccuracy, TargetAccuracy};
@@ -50,9 +51,12 @@ fn a_trial_is_aborted_with_a_reason_and_done_again() {
     assert!(stage.notice().contains("abort the trial before you repeat it"), "{}", stage.notice());
     assert_eq!(input(stage.control('x')), Some(Event::TrialPaused), "the trial stands while the reason is chosen");
     stage.at(23.0, Event::TrialPaused);
-    let reasons = ["Abort the trial: why?", "5 of 5", "» participant stopped", "technical failure", "interrupted"];
+    let reasons =
+        ["Abort the trial: why?", "6 of 6", "» 1 participant stopped", "2 technical failure", "6 other reason"];
     stage.shows((80, 24), &reasons);
-    stage.key(KeyCode::Down);
+    stage.shows((80, 24), &["or a reason in words", "enter choose; words can follow"]);
+    stage.key(KeyCode::Char('2'));
+    stage.shows((80, 24), &["» 2 technical failure"]);
     assert_eq!(stage.key(KeyCode::Enter), None);
     stage.shows((80, 24), &["technical failure: in words"]);
     for letter in "no power".chars() {
@@ -69,6 +73,107 @@ fn a_trial_is_aborted_with_a_reason_and_done_again() {
         assert!(screen.contains("aborted by the wizard") && screen.contains("technical failure"), "{screen}");
     }
     assert_eq!(stage.control('n'), Some(ConsoleCommand::Redo));
+}
+
+#[test]
+fn words_that_are_no_preset_reason_are_those_of_another_one() {
+    let paused = || {
+        let mut stage = Stage::sushi(ParticipantKind::Simulated);
+        stage.at(23.0, Event::TrialPaused);
+        stage.wait(1.0);
+        stage.control('x');
+        stage
+    };
+    let aborted = |mut stage: Stage| {
+        stage.wait(1.0);
+        match input(stage.key(KeyCode::Enter)) {
+            Some(Event::TrialAborted { reason }) => reason,
+            other => panic!("{other:?}"),
+        }
+    };
+    // "participant" begins a preset reason; from "felt" on the words are typed in a field of their own.
+    for words in ["Lights went out", "participant felt sick", "interfering noise"] {
+        let mut stage = paused();
+        for letter in words.chars() {
+            stage.wait(0.2);
+            assert_eq!(stage.key(KeyCode::Char(letter)), None, "{words}: the space bar types a space");
+        }
+        stage.shows((80, 24), &["other reason: in words", words]);
+        assert_eq!(aborted(stage), format!("other reason: {words}"));
+    }
+    let mut stage = paused();
+    assert_eq!(stage.paste(Some("the fire alarm rang")), None);
+    assert_eq!(aborted(stage), "other reason: the fire alarm rang");
+    // The entry itself needs words.
+    let mut stage = paused();
+    stage.key(KeyCode::Char('6'));
+    stage.key(KeyCode::Enter);
+    stage.wait(1.0);
+    assert_eq!(stage.key(KeyCode::Enter), None);
+    assert!(stage.notice().contains("another reason needs words"), "{}", stage.notice());
+    // Before a letter is typed, the space bar stops the robot; in a running trial it always does.
+    let mut stage = paused();
+    assert_eq!(input(stage.key(KeyCode::Char(' '))), Some(Event::RobotStopped));
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.control('l');
+    type_in(&mut stage, "inter");
+    assert_eq!(input(stage.key(KeyCode::Char(' '))), Some(Event::RobotStopped));
+    stage.hides((80, 24), &["other reason"]);
+}
+
+#[test]
+fn a_question_before_a_recording_is_answered_by_a_digit_and_enter() {
+    let key = |code| KeyEvent::new(code, KeyModifiers::NONE);
+    let answers = ["yes", "no"].map(str::to_string).to_vec();
+    let mut question = StartPrompt::new("P01: trial 1/2".to_string(), Vec::new(), answers);
+    assert_eq!(question.reply(&key(KeyCode::Enter)), None, "nothing is chosen");
+    assert_eq!(question.reply(&key(KeyCode::Char('2'))), None, "a digit chooses");
+    assert_eq!(question.reply(&key(KeyCode::Char('7'))), None, "no answer has this digit");
+    assert_eq!(question.chosen, Some(1));
+    assert_eq!(question.reply(&key(KeyCode::Char('1'))), None);
+    assert_eq!(question.reply(&key(KeyCode::Enter)), Some(StartReply::Answer(0)));
+    question.reply(&key(KeyCode::Backspace));
+    assert_eq!(question.reply(&key(KeyCode::Enter)), None);
+    assert_eq!(question.reply(&key(KeyCode::Esc)), Some(StartReply::Leave));
+}
+
+#[test]
+fn what_is_wrong_with_the_coordinates_of_gaze_is_told_by_the_last_sample() {
+    let told = |x: f64, y: f64, confidence: f64| {
+        let mut stage = Stage::new("sushi", ParticipantKind::Keyboard);
+        stage.session.spec.participant.gaze = GazeSource::Json;
+        for step in 0..60 {
+            stage.at(1.0 + f64::from(step) / 60.0, Event::Gaze(GazeSample::new(x, y, confidence)));
+        }
+        let checks = checks(&stage.session, &stage.model);
+        let quality = checks.into_iter().find(|check| check.name == "gaze quality").expect("a check");
+        (quality.found, quality.remedy.unwrap_or_default())
+    };
+    let (found, remedy) = told(960.0, 500.25, 1.0);
+    assert_eq!(found, "the last sample is not usable: x, y are 960, 500.25; on the display they are 0 to 1");
+    assert!(remedy.contains("pixels by its width and height") && remedy.contains("percent by 100"), "{remedy}");
+    let (found, remedy) = told(960.0, 500.0, 0.0);
+    assert!(found.contains("x, y are 960, 500") && found.contains("the confidence is 0.00"), "{found}");
+    assert!(remedy.contains("missing_confidence"), "{remedy}");
+    let (found, remedy) = told(-0.12, 0.5, 1.0);
+    assert!(found.contains("-0.12, 0.5: beside the display"), "{found}");
+    assert!(!remedy.contains("pixels"), "{remedy}");
+    let (found, _) = told(0.5, 0.5, 0.42);
+    assert_eq!(found, "the last sample is not usable: the confidence is 0.42, and must be 0.6 or more");
+    assert!(told(0.5, 0.5, 0.9).0.contains("gaze is usable"));
+}
+
+#[test]
+fn a_long_finding_of_the_checks_is_not_cut() {
+    let mut stage = Stage::new("sushi", ParticipantKind::Keyboard);
+    stage.session.spec.participant.gaze = GazeSource::Json;
+    for step in 0..60 {
+        stage.at(1.0 + f64::from(step) / 60.0, Event::Gaze(GazeSample::new(960.0, 500.0, 0.1)));
+    }
+    stage.key(KeyCode::Char('.'));
+    for size in [(120, 40), (200, 60)] {
+        stage.shows(size, &["0 to 1; the confidence is 0.10, and must be 0.6 or more"]);
+    }
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The check of the gaze with targets in a session.
 
-use tomcom_core::gaze::calibration::{TARGETS, ViewingGeometry, measure};
+use tomcom_core::gaze::calibration::{TARGETS, ViewingGeometry, measure, mistaken_coordinates};
 use tomcom_session::admit::is_external;
 use tomcom_session::gaze_check::{GazeCheckEvent, RunningGazeCheck};
 
@@ -95,6 +95,31 @@ fn a_check_measures_what_the_gaze_is_off_by() {
     let three = measure(&viewing, &TARGETS, &seen(3).collect::<Vec<_>>()).expect("three targets");
     assert_eq!(three.targets.iter().filter(|target| target.accuracy_deg.is_none()).count(), 2);
     assert_eq!(measure(&viewing, &TARGETS, &seen(2).collect::<Vec<_>>()), None);
+}
+
+#[test]
+fn coordinates_that_are_meant_otherwise_are_told_by_the_targets() {
+    let viewing = ViewingGeometry { display_m: [1.5, 0.84375], distance_m: 2.0 };
+    type Sent = fn([f64; 2]) -> [f64; 2];
+    let cases: [(Sent, Option<&str>); 8] = [
+        (|[x, y]| [x, y], None),
+        (|[x, y]| [x + 0.05, y], None),
+        (|[x, y]| [y, x], Some("x and y are swapped")),
+        (|[x, y]| [x, 1.0 - y], Some("y counts from the bottom")),
+        (|[x, y]| [1.0 - x, y], Some("x counts from the right")),
+        (|[x, y]| [x - 0.5, y - 0.5], Some("x and y count from the centre")),
+        (|[x, y]| [100.0 * x, 100.0 * y], Some("x and y are in percent")),
+        // What fits in no way is not explained.
+        (|[x, y]| [0.4 * x, 0.3 * y], None),
+    ];
+    for (number, (sent, told)) in cases.into_iter().enumerate() {
+        let at = |target: [f64; 2]| {
+            let [x, y] = sent(target);
+            vec![GazeSample::new(x, y, 0.9); 20]
+        };
+        let samples: Vec<Vec<GazeSample>> = TARGETS.iter().map(|&target| at(target)).collect();
+        assert_eq!(mistaken_coordinates(&viewing, &TARGETS, &samples), told, "case {number}");
+    }
 }
 
 #[test]

@@ -233,6 +233,27 @@ fn what_comes_next_follows_from_the_recordings_alone() {
 }
 
 #[test]
+fn excluded_trials_are_done_and_told_until_they_are_repeated() {
+    let study = study(|_| ());
+    let excluded = || RecordingOutcome::Excluded { reason: "lights went out".to_string() };
+    let progress = |recorded: &[(usize, u32, RecordingOutcome)]| {
+        let all: Vec<PlanRecording> =
+            recorded.iter().map(|(slot, attempt, outcome)| made(&study, *slot, *attempt, outcome.clone())).collect();
+        ParticipantProgress::from_recordings(&study, 0, &all).expect("recordings of the plan")
+    };
+    let done = RecordingOutcome::Complete;
+    let all = [(0, 1, done.clone()), (1, 1, excluded()), (2, 1, done.clone())];
+    let mut found = progress(&all);
+    assert_eq!(found.next, NextRecording::Finished);
+    let named: Vec<(usize, &str)> = found.excluded().map(|(slot, one)| (slot, one.recording.as_str())).collect();
+    assert_eq!(named, [(1, "2026-03-14-P01-11")]);
+    found.redo(Some(1));
+    assert_eq!(found.next, NextRecording::Begin { slot: 1, attempt: 2 });
+    let repeated = progress(&[&all[..], &[(1, 2, done)]].concat());
+    assert_eq!((repeated.excluded().count(), &repeated.next), (0, &NextRecording::Finished));
+}
+
+#[test]
 fn recordings_of_another_group_are_told_and_not_mixed_in() {
     let study = study(|_| ());
     let mut other = made(&study, 0, 1, RecordingOutcome::Complete);

@@ -151,6 +151,23 @@ fn a_folder_is_listed_and_is_no_recording_where_one_is_meant() {
     let told = complaint(&["study", out, "--raters", "ra", "Rb"]);
     assert!(told.contains("no codes of the rater ra"), "{told}");
     assert!(complaint(&["exclude", &format!("{out}/seed7-S002"), "--back"]).contains("no exclusion of"));
+    // All recordings of a participant are excluded at once, and included again.
+    let state = |code: &str| {
+        let list = figures(&["list", out, "--format", "json"], 0);
+        let rows = list["recordings"].as_array().expect("a list").clone();
+        rows.into_iter().find(|row| row["code"] == code).expect("a recording")["reason"].clone()
+    };
+    let ruled = figures(&["exclude", out, "--code", "S002", "--reason", "asked for it", "--format", "json"], 0);
+    assert_eq!((ruled.as_array().map(Vec::len), &ruled[0]["excluded"]), (Some(1), &true.into()), "{ruled}");
+    assert_eq!((state("S002"), state("S003")), ("excluded: asked for it".into(), "excluded: interrupted".into()));
+    let told =
+        String::from_utf8_lossy(&check(&["exclude", out, "--code", "S002", "--reason", "x"], 0).stdout).into_owned();
+    assert!(told.contains("all recordings of S002 are excluded already"), "{told}");
+    check(&["exclude", out, "--code", "S002", "--back"], 0);
+    assert_eq!(state("S002"), Value::Null);
+    assert!(complaint(&["exclude", out, "--code", "S09", "--reason", "x"]).contains("found no recording of S09"));
+    let usage = complaint(&["exclude", &format!("{out}/seed7-S002")]);
+    assert!(usage.contains("<--reason <REASON>|--back>"), "{usage}");
     assert!(complaint(&["list", &format!("{out}/seed7-S001/nothing")]).contains("found no folder of this name"));
 }
 

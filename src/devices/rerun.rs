@@ -191,7 +191,7 @@ impl RerunWriter {
                 if is_line {
                     one.set_trial_time(moment.trial.0 / MS * MS);
                 }
-                for circle in &circle {
+                if let Some(circle) = &circle {
                     one.log(&around(&entity), false, &batches(circle));
                     one.log(&recent(&entity), false, &components);
                 }

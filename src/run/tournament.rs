@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use sha2::{Digest, Sha256};
+
 use super::clock::monotonic_ns;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::settings::{ConceptSpec, ShadowMode};
@@ -32,10 +34,18 @@ pub struct TournamentRequest {
     pub out: PathBuf,
 }
 
+/// Longest part of a command line in the name of a folder, in characters.
+const LONGEST_NAME: usize = 60;
+
 /// The folder of a concept's recordings: its label without what a file name cannot have.
 fn folder_name(concept: &ConceptSpec) -> String {
     let plain = |letter: char| if letter.is_ascii_alphanumeric() { letter } else { '-' };
-    let name: String = concept.label().chars().map(plain).collect();
+    let mut name: String = concept.label().chars().map(plain).collect();
+    if name.len() > LONGEST_NAME {
+        // All of a long command line is in its checksum.
+        let digest: String = Sha256::digest(concept.label()).iter().take(4).map(|byte| format!("{byte:02x}")).collect();
+        name = format!("{}-{digest}", &name[..LONGEST_NAME]);
+    }
     match concept {
         ConceptSpec::Own(_) => name,
         ConceptSpec::External(_) => format!("external-{}", name.trim_matches('-')),

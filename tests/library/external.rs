@@ -28,6 +28,8 @@ fn agent(first: &str, answer: &str) -> String {
 }
 
 const HELLO: &str = r#"echo '{"id":0,"protocol":1,"name":"test"}'"#;
+/// Sends the first signal of a question, as text between the first brackets.
+const FIRST: &str = r#"case $line in *'"signals":[]'*) echo "{\"id\":$id}";; *) rest=${line#*\"signals\":\[}; echo "{\"id\":$id,\"send\":${rest%%\}*}},\"reason\":\"first\"}";; esac"#;
 const SILENT: &str = r#"echo "{\"id\":$id}""#;
 
 /// A short trial in which an external concept acts.
@@ -121,10 +123,7 @@ fn first_signal(question: &Value) -> Value {
 #[test]
 fn a_program_acts_and_its_recording_needs_no_program() {
     let out = empty_folder("external-acts");
-    // The first signal of the question, as text between the first brackets.
-    let sends =
-        r#"rest=${line#*\"signals\":\[}; one=${rest%%\}*}; echo "{\"id\":$id,\"send\":$one},\"reason\":\"first\"}""#;
-    let recordings = simulate_into(files(30.0, patient(&agent(HELLO, sends))), 2, &out);
+    let recordings = simulate_into(files(30.0, patient(&agent(HELLO, FIRST))), 2, &out);
     assert_eq!(recordings.len(), 2);
     for recording in recordings {
         let log = fs::read_to_string(recording.join(LOG_NAME)).expect("a recording");
@@ -393,7 +392,8 @@ fn a_comparison_takes_the_answers_from_the_recording() {
     let found = follower.comparison(true);
     let names: Vec<&str> = found.lanes.iter().map(|lane| lane.name.as_str()).collect();
     assert_eq!(names, ["assistant", "external", "tom"]);
-    assert!(advised > 5 && found.lanes[1].spoken.len() == advised, "{advised} answers");
+    let spoken = found.lanes[1].spoken.len();
+    assert!(spoken > 5 && spoken <= advised, "{spoken} signals in {advised} answers");
     let known = found.lanes[1].spoken[0].known.as_ref().expect("a context");
     assert_eq!(known.advice[0].words.as_deref(), Some("it comes first"));
 }
@@ -425,7 +425,7 @@ fn a_tournament_compares_in_pairs_and_goes_on_where_it_was_cut() {
     let out = empty_folder("tournament");
     let mut setup = session_file("default");
     (setup.spec.trial.seconds, setup.spec.robot.arm) = (60.0, ArmKind::Timed);
-    let shown = r#"rest=${line#*\"signals\":\[}; one=${rest%%\}*}; echo "{\"id\":$id,\"send\":$one}}""#;
+    let shown = FIRST;
     let fails = ExternalMind::new("exit 7; /");
     let concepts = vec![
         ConceptName::Tom.into(),

@@ -11,10 +11,10 @@ use super::{ExternalEvent, MOST_FAULTS, MindFault, MindRole, PROTOCOL, ToldBelie
 use crate::advisor::AdviceRequest;
 use crate::{Event, Session};
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::Signal;
 use tomcom_core::communication::concept::{DecisionPoint, RobotIntent};
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption};
 use tomcom_core::communication::settings::ExternalMind;
+use tomcom_core::communication::{Signal, unavailable};
 use tomcom_core::kitchen::{Agent, Kitchen};
 use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_core::mind::{WORTH_TELLING, rounded};
@@ -174,6 +174,9 @@ impl ConceptDialogue {
     /// The question for a request for advice; an earlier one that has no answer is given up.
     pub fn question(&mut self, request: &AdviceRequest) -> (String, Vec<Event>) {
         let DecisionPoint { seq, time, presses, situation, signals, .. } = request.moment();
+        // What the rule against repeats allows, and can be sent in this state.
+        let can_be_sent = |signal: &&Signal| unavailable(&self.kitchen, situation.state, signal).is_none();
+        let signals: Vec<Signal> = signals.iter().filter(can_be_sent).cloned().collect();
         self.asked += 1;
         if let Some(earlier) = self.pending.take() {
             self.unanswered.insert(earlier.id, earlier.seq);
@@ -196,11 +199,11 @@ impl ConceptDialogue {
             state: true_values(kitchen, situation.state),
             robot,
             since: &request.since,
-            signals,
+            signals: &signals,
             estimate: self.mind.estimate.then(|| told_estimate(kitchen, situation.belief)),
         };
         let question = line(&question);
-        self.pending = Some(PendingQuestion { id: self.asked, seq, time, signals: signals.to_vec() });
+        self.pending = Some(PendingQuestion { id: self.asked, seq, time, signals });
         (question, events)
     }
 

@@ -5,7 +5,7 @@ use std::fs;
 use crate::pseudo_terminal::Terminal;
 
 /// A program in `sh` that sends the first signal of every question, and tells its process number.
-const ANSWERS: &str = r#"echo $$ > pid; while read -r line; do rest=${line#*\"id\":}; id=${rest%%,*}; case $line in *'"ask":"begin"'*) echo '{"id":0,"protocol":1,"name":"mine"}';; *'"ask":"end"'*) exit 0;; *) rest=${line#*\"signals\":\[}; echo "{\"id\":$id,\"send\":${rest%%\}*}},\"reason\":\"it comes first\"}";; esac; done"#;
+const ANSWERS: &str = r#"echo $$ > pid; while read -r line; do rest=${line#*\"id\":}; id=${rest%%,*}; case $line in *'"ask":"begin"'*) echo '{"id":0,"protocol":1,"name":"mine"}';; *'"ask":"end"'*) exit 0;; *'"signals":[]'*) echo "{\"id\":$id}";; *) rest=${line#*\"signals\":\[}; echo "{\"id\":$id,\"send\":${rest%%\}*}},\"reason\":\"it comes first\"}";; esac; done"#;
 
 #[test]
 fn a_wizard_is_offered_what_a_program_recommends_and_it_ends_with_the_session() {

@@ -37,7 +37,7 @@ pub(super) struct ReviewArgs {
     asked: AskedLandmarks,
 }
 
-/// What is printed instead of opening the viewer.
+// What is printed instead of opening the viewer. Not a doc comment, which would stand in the command's help.
 #[derive(Clone, Copy, Debug, Args)]
 pub(super) struct AskedLandmarks {
     /// Only print a line for each error: the command that opens the viewer there, with its end and its reason.

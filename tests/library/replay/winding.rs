@@ -149,6 +149,7 @@ fn a_replay_goes_from_one_error_signal_or_false_belief_to_the_next_and_back() {
         let named = film.named(ReplayLandmark::Error).expect("an error");
         assert!(named.starts_with(&format!("error {} of {}: ", visited.len(), errors.len())), "{named}");
         assert!(named.split(": ").count() > 2, "press and reason: {named}");
+        assert!(named.contains("costs "), "the cost, and the cause where it is known: {named}");
     }
     assert_eq!(visited, errors);
     let back = film.landmark(ReplayLandmark::Error, false).expect("the error before");

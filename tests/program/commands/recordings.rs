@@ -191,7 +191,7 @@ fn a_path_that_is_nearly_right_gets_a_suggestion() {
 fn errors_of_a_recording_are_listed_as_commands_that_open_the_viewer_there() {
     let recording = "tests/golden/format-3-hand.jsonl";
     let list = |asked: &[&str]| {
-        let output = check(&[&["review", recording], asked].concat(), 0);
+        let output = check(&[&["review", recording][..], asked].concat(), 0);
         String::from_utf8(output.stdout).expect("UTF-8")
     };
     let told = list(&["--errors", "--signals", "--beliefs"]);

@@ -82,10 +82,8 @@ pub(super) fn stroke(session: &Session, code: KeyCode, advances: bool) -> Option
         KeyCode::Delete if shown.is_some() => Some(SheetKey::Skip),
         KeyCode::Char(digit @ '0'..='9') => Some(SheetKey::Digit(digit as u8 - b'0')),
         KeyCode::Char(letter) if letter.is_alphabetic() || letter == '-' => {
-            input_of_sheet(session).map(|_| SheetKey::Letter(letter))
-        }
-        KeyCode::Char(letter) if letter.is_alphabetic() && sheet(session) == Some(FormContent::Failed) => {
-            Some(SheetKey::Letter(letter))
+            let is_typed = input_of_sheet(session).is_some() || sheet(session) == Some(FormContent::Failed);
+            is_typed.then_some(SheetKey::Letter(letter))
         }
         _ => None,
     }

@@ -3,7 +3,7 @@
 //! else stays in the [`ConsoleModel`].
 
 pub mod actions;
-pub(crate) mod beliefs;
+pub mod beliefs;
 pub mod chord;
 pub mod coding;
 pub mod console_model;

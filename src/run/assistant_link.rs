@@ -22,7 +22,7 @@ const LOOKS: Duration = Duration::from_millis(200);
 /// What comes back from whoever advises.
 #[derive(Debug)]
 pub(super) enum AssistantNews {
-    Advice(Recommendation),
+    Advice(Box<Recommendation>),
     External(MindNews),
 }
 
@@ -63,7 +63,7 @@ impl AssistantLink {
     /// The events of what came back, for the session.
     pub fn take(&mut self, news: AssistantNews) -> Vec<Event> {
         match (self, news) {
-            (_, AssistantNews::Advice(advice)) => vec![Event::Advised(advice)],
+            (_, AssistantNews::Advice(advice)) => vec![Event::Advised(*advice)],
             (AssistantLink::External(concept), AssistantNews::External(news)) => concept.take(news),
             (AssistantLink::Own(_), AssistantNews::External(_)) => Vec::new(),
         }
@@ -73,7 +73,7 @@ impl AssistantLink {
 /// Waits for whoever advises; waits forever if the session asks nobody.
 pub(super) async fn next_news(link: &mut Option<AssistantLink>) -> Option<AssistantNews> {
     match link {
-        Some(AssistantLink::Own(thread)) => thread.answers.recv().await.map(AssistantNews::Advice),
+        Some(AssistantLink::Own(thread)) => thread.answers.recv().await.map(Box::new).map(AssistantNews::Advice),
         Some(AssistantLink::External(concept)) => concept.news.recv().await.map(AssistantNews::External),
         None => std::future::pending().await,
     }

@@ -42,7 +42,7 @@ pub(super) enum LoopEvent {
     TargetDue,
     /// An input from the participant's page.
     Page(PageInput),
-    Advice(Box<AssistantNews>),
+    Advice(AssistantNews),
     PointerTick,
     /// Files that other programs or this one extend are due to be read or flushed.
     FileTick,
@@ -184,7 +184,7 @@ async fn next_event<S: ConsoleShell>(shell: &mut S, station: &mut OperatorStatio
         () = until(due.engine) => LoopEvent::EngineDue,
         () = until(due.target) => LoopEvent::TargetDue,
         Some(input) = station.display.next() => LoopEvent::Page(input),
-        Some(advice) = shell.advice() => LoopEvent::Advice(Box::new(advice)),
+        Some(advice) = shell.advice() => LoopEvent::Advice(advice),
         _ = ticks.pointer.tick(), if with_pointer => LoopEvent::PointerTick,
         _ = ticks.files.tick() => LoopEvent::FileTick,
         _ = ticks.watch.tick() => LoopEvent::WatchTick,

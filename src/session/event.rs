@@ -241,7 +241,7 @@ impl Event {
             Event::TrialAborted { .. } | Event::TrialExcluded { .. } => &["reason"],
             Event::Preflight { .. } => &["checks"],
             Event::External(_) => &["name", "found", "answer"],
-            Event::Advised(_) => &["words"],
+            Event::Advised(advice) if advice.words.is_some() => &["words"],
             Event::Tracker(TrackerEvent::Connected { .. }) => &["device"],
             Event::Tracker(TrackerEvent::Lost { .. }) => &["reason"],
             Event::Tracker(TrackerEvent::OtherSurfaces { .. }) => &["names"],

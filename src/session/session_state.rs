@@ -284,6 +284,7 @@ pub struct TimelineEntry {
 
 /// What the console and the tables show of events.
 #[derive(Clone, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "some hundred entries a trial, matched by the events in them")]
 pub enum TimelineEvent {
     Press {
         agent: Agent,

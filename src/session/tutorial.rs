@@ -1,7 +1,7 @@
 //! The participant's tutorial, a phase of a study plan: pages on the display before the first practice, which the
 //! participant turns.
 
-use std::collections::HashSet;
+use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
@@ -217,7 +217,7 @@ fn ordered(
     state: State,
     left: &[String],
     goal: State,
-    tried: &mut HashSet<(State, Vec<String>)>,
+    tried: &mut BTreeSet<(State, Vec<String>)>,
 ) -> Option<Vec<String>> {
     if left.is_empty() {
         return (state == goal).then(Vec::new);
@@ -525,7 +525,7 @@ impl TutorialState {
         let goal =
             self.left.iter().try_fold(self.kitchen, |state, name| pressed(kitchen, state, Agent::Human, name))?;
         let after = pressed(kitchen, self.kitchen, Agent::Human, &self.left[at])?;
-        Some((after, ordered(kitchen, after, &without(&self.left, at), goal, &mut HashSet::new())?))
+        Some((after, ordered(kitchen, after, &without(&self.left, at), goal, &mut BTreeSet::new())?))
     }
 
     pub(crate) fn answer(&mut self, is_right: bool, choice: u8) {

@@ -44,8 +44,7 @@ pub enum ParticipantDeletionError {
 pub fn delete(found: ParticipantData) -> Result<ParticipantData, ParticipantDeletionError> {
     let locks = found.recordings.iter().map(|folder| RecordingLock::take(folder));
     let locks = locks.collect::<Result<Vec<RecordingLock>, _>>().map_err(ParticipantDeletionError::Recording)?;
-    let again =
-        find(&found.root, &found.temporary, &found.code).map_err(|error| ParticipantDeletionError::File(error))?;
+    let again = find(&found.root, &found.temporary, &found.code).map_err(ParticipantDeletionError::File)?;
     if again != found {
         return Err(ParticipantDeletionError::Changed { folder: found.root });
     }

@@ -133,7 +133,7 @@ impl ConsoleShell for Live {
             LoopEvent::EngineDue => self.fire(),
             LoopEvent::TargetDue => self.show_target(),
             LoopEvent::Page(input) => self.take_page_input(input),
-            LoopEvent::Advice(news) => self.take_assistant_news(*news),
+            LoopEvent::Advice(news) => self.take_assistant_news(news),
             LoopEvent::PointerTick => self.sample_pointer(),
             LoopEvent::FileTick => self.flush(),
             LoopEvent::WatchTick => self.watch(),

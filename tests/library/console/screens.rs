@@ -355,7 +355,7 @@ fn the_focus_goes_through_the_panels_and_opens_each_at_full_size() {
 #[test]
 fn orders_and_errors_are_explained_at_every_size() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    let needs = ["□ shaped rice", "□ nori", "◐ cut tuna", "✓ cooked rice", "✓ nori", "□ cut crab"];
+    let needs = ["□ shaped rice", "□ nori", "✓ cut tuna", "✓ cooked rice", "✓ nori", "□ cut crab"];
     let why = "✗ take salmon: order 1 needs tuna";
     let believed = ["thinks cut salmon", "thinks no order"];
     stage.shows_everywhere(&needs);
@@ -371,6 +371,13 @@ fn orders_and_errors_are_explained_at_every_size() {
     for size in SIZES {
         stage.hides(size, &["thinks"]);
     }
+    // What is in work has a sign of its own.
+    let [hand, raw] = [
+        stage.session.kitchen.hands[Agent::Robot.index()].0,
+        stage.session.kitchen.content_named("tuna raw").expect("a content").0,
+    ];
+    stage.session.state.set_code(LocationId(hand), raw);
+    stage.shows_everywhere(&["◐ cut tuna"]);
     // Whoever plays the participant at this keyboard has to remember the recipes.
     let mut stage = Stage::sushi(ParticipantKind::Keyboard);
     stage.key(KeyCode::Tab);

@@ -166,6 +166,11 @@ fn set(table: &mut toml::Table, path: &str, value: toml::Value) {
         }
         (toml::Value::Array(numbers), None) => set_first(numbers, value),
         (place, None) => *place = value,
+        // A concept is named, or a program with settings of its own.
+        (place @ toml::Value::String(_), Some("wait_s")) => {
+            let concept = [("external".to_string(), "true".into()), ("wait_s".to_string(), value)];
+            *place = toml::Value::Table(concept.into_iter().collect());
+        }
         (place, Some(_)) => panic!("{path}: {place} is no table"),
     }
 }
@@ -235,7 +240,9 @@ fn check_complete(name: &str, table: &toml::Table, ranges: &[NumberRange]) {
 
 #[test]
 fn every_number_of_every_settings_file_has_a_range() {
-    check_complete("a session file", &every_setting(), &ranges::of_sessions());
+    let mut all = every_setting();
+    set(&mut all, "assistant.concept.wait_s", 10.0.into());
+    check_complete("a session file", &all, &ranges::of_sessions());
     check_complete("a questionnaire", &questionnaire(), &ranges::OF_QUESTIONNAIRES);
     for layout in ["sushi", "burger"] {
         let text = fs::read_to_string(format!("layouts/{layout}.toml")).expect("a layout");

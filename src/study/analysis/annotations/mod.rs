@@ -143,7 +143,7 @@ impl AnnotationCollector {
         let kitchen = &follower.session.kitchen;
         let end = self.end;
         let moments = |name: String, all: Vec<(SessionTime, String)>| {
-            let annotations = all.into_iter().map(|(time, words)| (time, time, words)).collect();
+            let annotations: Vec<_> = all.into_iter().map(|(time, words)| (time, time, words)).collect();
             (name, false, annotations)
         };
         let spells = |name: String, all: Vec<(SessionTime, Option<SessionTime>, String)>| {
@@ -158,7 +158,7 @@ impl AnnotationCollector {
             let why = if error.why.is_empty() { String::new() } else { format!(" ({})", error.why) };
             Some((time_of(error.press)?, format!("error {}: {}{why}", error.error, error.words())))
         });
-        let mut tiers: Vec<(String, bool, Vec<(SessionTime, SessionTime, String)>)> = vec![
+        let mut tiers = vec![
             moments("presses human".to_string(), human),
             moments("presses robot".to_string(), robot),
             moments(ERRORS.to_string(), errors.collect()),

@@ -224,6 +224,9 @@ def plays(tomcom, chromium, folder, kitchen, language):
         console.key("\x1b[3~")
         console.wait_for("Skip the rest of probe")
         console.key("\r")
+        console.wait_for(": in words")
+        page.page.wait_for_timeout(700)  # a key that is held down counts once
+        console.key("\r")
         page.wait_for("Stage.shown().probe && Stage.shown().probe.closed")
         page.stage("running")
         page.page.wait_for_timeout(300)

@@ -71,6 +71,8 @@ pub struct WaitedParticipant {
     /// What the display showed at the last question.
     shown: Value,
     next: Option<NextMove>,
+    /// When it wanted to be asked again: the session's time stands where nothing happens.
+    asked_for: SessionTime,
     faults: u64,
 }
 
@@ -108,7 +110,7 @@ impl WaitedParticipant {
             Ok(name) => {
                 let began = Event::External(ExternalEvent::Began { role, name });
                 let shown = Value::Null;
-                let one = WaitedParticipant { mind, connection, asked: 0, shown, next: None, faults: 0 };
+                let one = WaitedParticipant { mind, connection, asked: 0, shown, next: None, asked_for: SessionTime::ZERO, faults: 0 };
                 (Some(one), Exchange { events: vec![began], failed: None })
             }
         }
@@ -123,7 +125,9 @@ impl WaitedParticipant {
     pub fn act(&mut self, session: &Session) -> Vec<Event> {
         // The next question comes even if the display stays as it is.
         self.shown = Value::Null;
-        let Some((button, belief)) = self.next.take().and_then(|next| next.press) else { return Vec::new() };
+        let Some(next) = self.next.take() else { return Vec::new() };
+        self.asked_for = next.at;
+        let Some((button, belief)) = next.press else { return Vec::new() };
         let belief =
             belief.map(|belief| Event::ParticipantBelieves(recorded(&session.kitchen, session.state, &belief)));
         let press = Event::Press { agent: Agent::Human, button, at_ns: None };
@@ -142,7 +146,7 @@ impl WaitedParticipant {
         self.shown = display;
         self.next = None;
         self.asked += 1;
-        let time_s = session.trial_clock(session.time).as_secs_f64();
+        let time_s = session.trial_clock(session.time.max(self.asked_for)).as_secs_f64();
         let question = line(&ParticipantQuestion { ask: "act", id: self.asked, time_s, display: &self.shown });
         let news = match self.connection.to.send(question) {
             Ok(()) => self.connection.from.receive(Duration::from_secs_f64(self.mind.wait_s)),
@@ -206,7 +210,8 @@ impl WaitedParticipant {
                 return Err(malformed(format!("a belief without {}; right would be every aspect", left_out.name)));
             }
         }
-        let at = |after_s: f64| session.time + SessionTime::from_secs_f64(after_s.max(LEAST_S));
+        let now = session.time.max(self.asked_for);
+        let at = |after_s: f64| now + SessionTime::from_secs_f64(after_s.max(LEAST_S));
         match answer.press {
             Some(button) if kitchen.button_named(Agent::Human, &button).is_none() => {
                 Err(malformed(format!("a press of {button}, which is no button of the human")))

@@ -110,7 +110,15 @@ impl WaitedParticipant {
             Ok(name) => {
                 let began = Event::External(ExternalEvent::Began { role, name });
                 let shown = Value::Null;
-                let one = WaitedParticipant { mind, connection, asked: 0, shown, next: None, asked_for: SessionTime::ZERO, faults: 0 };
+                let one = WaitedParticipant {
+                    mind,
+                    connection,
+                    asked: 0,
+                    shown,
+                    next: None,
+                    asked_for: SessionTime::ZERO,
+                    faults: 0,
+                };
                 (Some(one), Exchange { events: vec![began], failed: None })
             }
         }

@@ -200,17 +200,6 @@ def check_documented_kitchen(scratch):
     check_counts(figures["recordings"], figures)
     found = tomcom("replay", figures["recordings"][0], "--verify")
     assert found["verified"] is True, found
-    check_documented_pandas(figures["recordings"][0])
-
-
-def check_documented_pandas(recording):
-    """The line of pandas on docs/recordings.md reads a recording."""
-    (code,) = re.findall(r"```python\n(.*?events = .*?)```", RECORDINGS, re.DOTALL)
-    found = {}
-    exec(code.replace("recordings/seed7-S001", str(recording)), found)
-    _, events = read(recording)
-    assert found["events"]["kind"].tolist() == events["kind"].tolist()
-    assert found["events"]["t_ns"].tolist() == events["t_ns"].tolist()
 
 
 if __name__ == "__main__":

@@ -53,14 +53,7 @@ impl WaitedConcept {
     fn exchange(&mut self, question: String, wait_s: f64, mut events: Vec<Event>) -> Exchange {
         let Some(connection) = &mut self.connection else { return Exchange::default() };
         let wait = Duration::from_secs_f64(wait_s);
-        let mut news = match connection.to.send(question) {
-            Ok(()) => connection.from.receive(wait),
-            // The program has more to say about its end than the pipe.
-            Err(found) => match connection.from.receive(Duration::from_secs(1)) {
-                MindNews::Over(why) => MindNews::Over(why),
-                _ => MindNews::Over(found),
-            },
-        };
+        let mut news = connection.ask(question, wait);
         let ends = loop {
             let DialogueOutcome { events: mut told, ends } = match news {
                 MindNews::Line(text) => self.dialogue.take(&text),

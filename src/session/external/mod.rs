@@ -220,6 +220,20 @@ pub struct MindConnection {
     pub from: Box<dyn MindReader>,
 }
 
+impl MindConnection {
+    /// Sends a question and waits for what comes back.
+    fn ask(&mut self, question: String, wait: Duration) -> MindNews {
+        match self.to.send(question) {
+            Ok(()) => self.from.receive(wait),
+            // The program has more to say about its end than the pipe.
+            Err(found) => match self.from.receive(Duration::from_secs(1)) {
+                MindNews::Over(why) => MindNews::Over(why),
+                _ => MindNews::Over(found),
+            },
+        }
+    }
+}
+
 /// Makes connections to external minds, and says what a person in the participant's place would see.
 pub trait ExternalMinds: fmt::Debug + Send + Sync {
     fn open(&self, mind: &ExternalMind) -> Result<MindConnection, String>;

@@ -156,13 +156,7 @@ impl WaitedParticipant {
         self.asked += 1;
         let time_s = session.trial_clock(session.time.max(self.asked_for)).as_secs_f64();
         let question = line(&ParticipantQuestion { ask: "act", id: self.asked, time_s, display: &self.shown });
-        let news = match self.connection.to.send(question) {
-            Ok(()) => self.connection.from.receive(Duration::from_secs_f64(self.mind.wait_s)),
-            Err(found) => match self.connection.from.receive(Duration::from_secs(1)) {
-                MindNews::Over(why) => MindNews::Over(why),
-                _ => MindNews::Over(found),
-            },
-        };
+        let news = self.connection.ask(question, Duration::from_secs_f64(self.mind.wait_s));
         self.take_news(session, news)
     }
 

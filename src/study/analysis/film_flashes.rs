@@ -165,7 +165,7 @@ pub fn align(search: &FlashSearch, drawn_s: &[f64]) -> Result<FilmAlignment, Ali
     let try_pixel = |seen: &[SeenFlash]| align_pixel(seen, drawn_s, search.span_s(), frame_s);
     let closely = pixels.iter().take(CLOSELY);
     let mut found: Vec<FilmAlignment> = closely.filter_map(|(_, _, seen)| try_pixel(seen).ok()).collect();
-    // What is told of a film that does not fit is about the pixel that looks most like the page's square.
+    // The refusal of a film describes the pixel that looks most like the page's square.
     let refusal = || match try_pixel(likeliest.2) {
         Err(refusal) => refusal,
         Ok(alignment) => {

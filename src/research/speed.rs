@@ -90,7 +90,7 @@ impl TimedAdvisor {
     fn work_ahead(&mut self, last: &AdviceRequest, until: SessionTime) -> u64 {
         let free = Duration::from_secs_f64(until.secs_since(last.time).max(0.0));
         let began = Instant::now();
-        self.advisor.work_ahead(last, &mut || began.elapsed() < free);
+        self.advisor.work_ahead(last, &|| began.elapsed() < free);
         began.elapsed().as_nanos() as u64
     }
 }
@@ -103,8 +103,12 @@ pub fn measure(recording: &Path) -> FileResult<TimingSummary> {
     let mut replay = RecordingReplay::open(recording)?;
     replay.follower.timing = Some(InferenceTiming::with_clock(monotonic_ns));
     let session = replay.session();
-    let [mut plain, mut ahead] =
-        [(); 2].map(|()| TimedAdvisor::new(Advisor::new(session, CostToGo::new(session.kitchen.clone()))));
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let [mut plain, mut ahead] = [(); 2].map(|()| {
+        let mut advisor = Advisor::new(session, CostToGo::new(session.kitchen.clone()));
+        advisor.use_threads(threads);
+        TimedAdvisor::new(advisor)
+    });
     let began = Instant::now();
     let (mut step_ns, mut step_ahead_ns, mut ahead_ns) = (Vec::new(), Vec::new(), 0);
     let (mut last, mut presses): (Option<AdviceRequest>, usize) = (None, 0);

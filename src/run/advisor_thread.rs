@@ -1,6 +1,8 @@
 //! The assistant of a live session, which runs on a thread of its own and always answers the latest request.
 
-use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{Sender, channel};
 use std::thread;
 
 use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
@@ -12,55 +14,52 @@ use tomcom_session::advisor::{AdviceRequest, Advisor};
 #[derive(Debug)]
 pub struct AdvisorThreadHandle {
     ask: Sender<AdviceRequest>,
+    /// Number of requests that wait; working ahead ends when there is one.
+    waiting: Arc<AtomicUsize>,
     /// Recommendations of the assistant, in the order of the requests.
     pub answers: UnboundedReceiver<Recommendation>,
 }
 
 impl AdvisorThreadHandle {
-    /// Starts the assistant's thread, which ends when the returned connection is dropped.
+    /// Starts the assistant's thread, which ends when the returned connection is dropped. It computes an answer on
+    /// several threads where the machine has them.
     pub fn start(mut advisor: Advisor) -> AdvisorThreadHandle {
         let (ask, questions) = channel::<AdviceRequest>();
         let (answer, answers) = unbounded_channel();
+        let waiting = Arc::new(AtomicUsize::new(0));
+        let asked = waiting.clone();
         thread::spawn(move || {
-            let mut next = questions.recv().ok();
-            while let Some(question) = next {
+            advisor.use_threads(thread::available_parallelism().map_or(1, usize::from));
+            while let Ok(question) = questions.recv() {
                 // The newest request for advice replaces earlier ones that have not been answered.
-                let newest = questions.try_iter().last().unwrap_or(question);
+                let mut newest = question;
+                let mut taken = 1;
+                for question in questions.try_iter() {
+                    newest = question;
+                    taken += 1;
+                }
+                asked.fetch_sub(taken, Ordering::Relaxed);
                 if answer.send(advisor.answer(&newest)).is_err() {
                     return;
                 }
-                next = until_asked(&mut advisor, &newest, &questions);
+                if advisor.works_ahead {
+                    advisor.work_ahead(&newest, &|| asked.load(Ordering::Relaxed) == 0);
+                }
             }
         });
-        AdvisorThreadHandle { ask, answers }
+        AdvisorThreadHandle { ask, waiting, answers }
     }
 
     /// Sends a request for advice to the assistant, which replaces an earlier request that has not been answered.
     pub fn ask(&self, question: AdviceRequest) {
+        self.waiting.fetch_add(1, Ordering::Relaxed);
         // If the assistant's thread has ended, the session continues without recommendations.
         let _ = self.ask.send(question);
     }
 }
 
-/// Waits for the next request for advice, and works ahead meanwhile if the session's settings say so; `None` once
-/// nobody can send requests any more.
-fn until_asked(
-    advisor: &mut Advisor,
-    last: &AdviceRequest,
-    questions: &Receiver<AdviceRequest>,
-) -> Option<AdviceRequest> {
-    let mut next = Err(TryRecvError::Empty);
-    if advisor.works_ahead {
-        advisor.work_ahead(last, &mut || {
-            if matches!(next, Err(TryRecvError::Empty)) {
-                next = questions.try_recv();
-            }
-            matches!(next, Err(TryRecvError::Empty))
-        });
-    }
-    match next {
-        Ok(question) => Some(question),
-        Err(TryRecvError::Empty) => questions.recv().ok(),
-        Err(TryRecvError::Disconnected) => None,
+impl Drop for AdvisorThreadHandle {
+    fn drop(&mut self) {
+        self.waiting.fetch_add(1, Ordering::Relaxed);
     }
 }

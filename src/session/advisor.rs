@@ -119,13 +119,18 @@ impl Advisor {
         self.concept.advise(&mut self.cost, &question.moment())
     }
 
+    /// Lets it compute on this many threads at once, which never changes an answer.
+    pub fn use_threads(&mut self, threads: usize) {
+        self.concept.use_threads(threads);
+    }
+
     /// Number of decisions whose cost to go was in no cache.
     pub fn computed_decisions(&self) -> u64 {
         self.cost.counts().decisions_missed
     }
 
     /// Prepares for likely next requests as long as `proceed` returns true; see [`Concept::work_ahead`].
-    pub fn work_ahead(&mut self, question: &AdviceRequest, proceed: &mut dyn FnMut() -> bool) {
+    pub fn work_ahead(&mut self, question: &AdviceRequest, proceed: &(dyn Fn() -> bool + Sync)) {
         self.concept.work_ahead(&mut self.cost, &question.moment(), proceed);
     }
 }

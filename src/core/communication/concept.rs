@@ -44,7 +44,10 @@ pub trait Concept: fmt::Debug + Send {
 
     /// Works ahead after a decision point: fills the caches with what the decision points after the likeliest next
     /// presses will need, as long as `proceed` returns true. Recommendations stay the same, but come sooner.
-    fn work_ahead(&mut self, _cost: &mut CostToGo, _moment: &DecisionPoint, _proceed: &mut dyn FnMut() -> bool) {}
+    fn work_ahead(&mut self, _cost: &mut CostToGo, _moment: &DecisionPoint, _proceed: &(dyn Fn() -> bool + Sync)) {}
+
+    /// Lets the concept compute on this many threads at once, which never changes an answer.
+    fn use_threads(&mut self, _threads: usize) {}
 }
 
 /// A situation of a trial as the assistant knows it.
@@ -262,7 +265,7 @@ impl DevConcept {
     /// The agent's best press if the press lowers the cost to go; ties go to the layout's order.
     fn step(&self, cost: &mut CostToGo, state: State, agent: Agent) -> Option<(ButtonId, State)> {
         let recipes = self.kitchen.true_recipes();
-        let decision = *cost.decision(state, &recipes, agent);
+        let decision = cost.decision(state, &recipes, agent);
         let buttons = self.kitchen.buttons[agent.index()].len();
         let best = (0..buttons).min_by_key(|&button| decision.after[button])?;
         let button = ButtonId(best as u8);

@@ -115,7 +115,7 @@ impl Tally {
         recipes: &Recipes,
         agent: Agent,
     ) -> DecisionCosts {
-        let decision = *cost.decision(state, recipes, agent);
+        let decision = cost.decision(state, recipes, agent);
         let buttons = kitchen.buttons[agent.index()].len();
         self.sum += decision.after[..buttons].iter().map(|&cost| u64::from(cost)).sum::<u64>();
         decision

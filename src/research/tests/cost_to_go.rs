@@ -173,6 +173,31 @@ fn a_decision_is_what_its_single_values_are() {
     }
 }
 
+/// Threads that share the caches read what one thread computes alone, also while others write: so many states meet in
+/// few lines of the cache.
+#[test]
+fn threads_share_the_caches() {
+    let kitchen = kitchen("sushi");
+    let recipes = kitchen.true_recipes();
+    let states: Vec<State> = scrambled(&kitchen).into_iter().take(300).collect();
+    let decided = |cost: &mut CostToGo, state: &State| {
+        let decision = cost.decision(*state, &recipes, Agent::Human);
+        (decision.here, decision.after)
+    };
+    let alone: Vec<_> = states.iter().map(|state| decided(&mut CostToGo::new(kitchen.clone()), state)).collect();
+    let shared = CostToGo::new(kitchen.clone());
+    std::thread::scope(|scope| {
+        for thread in 0..4 {
+            let (mut cost, states, alone) = (shared.clone(), &states, &alone);
+            scope.spawn(move || {
+                for at in (0..20 * states.len()).map(|turn| (turn * 7 + thread * 31) % states.len()) {
+                    assert_eq!(decided(&mut cost, &states[at]), alone[at]);
+                }
+            });
+        }
+    });
+}
+
 #[test]
 #[ignore = "takes minutes"]
 fn the_exact_costs_in_the_files_are_those_of_the_oracle() {

@@ -7,14 +7,20 @@
 //! nothing by waiting for the horizon. A signal that changes none of a sample's worlds saves exactly nothing in its
 //! rollout, which is skipped. Where signals take time, a rollout reads its signal after the mean delay, and its saving is
 //! multiplied by the probability that the signal is read: a human who misses the signal continues like the baseline.
+//!
+//! The rollouts of a batch can run side by side on several threads (lanes): their random numbers are drawn before, and
+//! their results are added in their order, so the answer is the same on any number of threads.
 
+mod lane;
 mod rollout;
 mod sample;
 mod work_ahead;
 
 use std::sync::Arc;
+use std::sync::atomic::AtomicUsize;
 
-use self::rollout::{BaselineRollout, DecisionDraws, RobotPolicy, Rollout, RolloutContext, RolloutState};
+use self::lane::{Batch, Lane, RolloutDraws};
+use self::rollout::{DecisionDraws, RolloutContext};
 use self::sample::{BeliefSamples, PER_DECISION, QuasiRandomLattice};
 use super::concept::{Concept, DecisionPoint, Situation};
 use super::recommendation::{Recommendation, SignalOption, SignalReason, aspects_told};
@@ -22,13 +28,16 @@ use super::settings::AssistantSpec;
 use super::signal::{Signal, unavailable};
 use crate::base::rng::{Stream, stream};
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, AspectId, Kitchen, WeightedWorlds};
+use crate::kitchen::{Agent, AspectId, Kitchen};
 use crate::mind::choice::HumanChoice;
 use crate::mind::model::{HumanModel, LookingModel};
 use crate::mind::{ChoiceModel, rounded};
 
 /// Number of rollouts after which the planner checks for which signals the sign of the net benefit is certain enough.
 const BATCH: usize = 32;
+
+/// Largest number of rollouts side by side: more would take the processors from console, display and tracker.
+const MOST_LANES: usize = 2;
 
 /// The ToM-Com planner: estimates the net benefit of each signal by paired rollouts. The planner's caches change
 /// computing time, never results.
@@ -44,12 +53,12 @@ pub struct Planner {
     /// For each button of the human, the aspects at which the human looks before a press: the locations involved and,
     /// before fetching an item, the robot's hand, which may be bringing the item.
     watched: Vec<Vec<AspectId>>,
-    policy: RobotPolicy,
     samples: BeliefSamples,
-    baseline: BaselineRollout,
-    state: RolloutState,
-    believed: WeightedWorlds<u32>,
-    draws: Vec<DecisionDraws>,
+    batch: Vec<RolloutDraws>,
+    /// What each thread of rollouts needs; at least one.
+    lanes: Vec<Lane>,
+    /// The threads of all lanes but the first, which runs on the caller's.
+    threads: Option<Arc<rayon::ThreadPool>>,
 }
 
 #[derive(Clone, Debug)]
@@ -75,12 +84,10 @@ impl Planner {
             looking: spec.rollout.looking(&human.looking),
             involved: buttons.clone().map(|button| aspects(button).collect()).collect(),
             watched: buttons.map(watched).collect(),
-            policy: RobotPolicy::default(),
             samples: BeliefSamples::default(),
-            baseline: BaselineRollout::default(),
-            state: RolloutState::default(),
-            believed: WeightedWorlds::default(),
-            draws: Vec::new(),
+            batch: Vec::new(),
+            lanes: vec![Lane::default()],
+            threads: None,
             kitchen,
             spec,
             seed,
@@ -105,26 +112,38 @@ impl Planner {
         moment.signals.iter().filter(is_possible).map(candidate).collect()
     }
 
-    /// Runs one baseline rollout, and a paired rollout for each signal that changes a world of the sample.
+    /// Draws the beliefs and the random numbers of the rollouts with these numbers.
+    fn draw(
+        &mut self,
+        situation: &Situation,
+        numbers: std::ops::Range<usize>,
+        lattice: &QuasiRandomLattice,
+        random: &mut Stream,
+    ) {
+        let model = &self.spec.rollout;
+        self.batch.resize_with(numbers.len(), RolloutDraws::default);
+        for (rollout, number) in self.batch.iter_mut().zip(numbers) {
+            self.samples.draw(&self.kitchen, situation.state, number, random, &mut rollout.believed);
+            let [first, sees, firsts @ ..] = lattice.point(number);
+            rollout.first_s = first * model.human_press_s;
+            rollout.sees = sees < self.looking.capture;
+            rollout.decisions.clear();
+            rollout.decisions.extend((0..model.horizon).map(|_| DecisionDraws::draw(random)));
+            for (draws, first) in rollout.decisions.iter_mut().zip(firsts.chunks_exact(PER_DECISION)) {
+                draws.begin_with(first);
+            }
+        }
+    }
+
+    /// Runs the drawn batch, on all lanes at once. Returns whether it was finished.
     fn roll_out(
         &mut self,
         cost: &mut CostToGo,
         situation: &Situation,
         candidates: &mut [Candidate],
-        number: usize,
-        lattice: &QuasiRandomLattice,
-        random: &mut Stream,
-    ) {
+        proceed: &(dyn Fn() -> bool + Sync),
+    ) -> bool {
         let model = &self.spec.rollout;
-        self.samples.draw(&self.kitchen, situation.state, number, random, &mut self.believed);
-        let [first, sees, firsts @ ..] = lattice.point(number);
-        let first_s = first * model.human_press_s;
-        let sees = sees < self.looking.capture;
-        self.draws.clear();
-        self.draws.extend((0..model.horizon).map(|_| DecisionDraws::draw(random)));
-        for (draws, first) in self.draws.iter_mut().zip(firsts.chunks_exact(PER_DECISION)) {
-            draws.begin_with(first);
-        }
         let looks = |rate_hz: f64| -(-rate_hz * model.human_press_s).exp_m1();
         let context = RolloutContext {
             kitchen: &self.kitchen,
@@ -139,26 +158,34 @@ impl Planner {
             other_looks: looks(self.looking.other_looks_hz),
             capture: self.looking.capture,
         };
-        let read_s = situation.forecast.delay_s;
-        let mut rollout =
-            Rollout { context: &context, cost, policy: &mut self.policy, draws: &self.draws, first_s, read_s };
-        let mut is_baseline_known = false;
-        for candidate in candidates.iter_mut().filter(|candidate| !candidate.is_decided) {
-            let is_known = |&aspect: &AspectId| self.believed.are_certain_of(&self.kitchen, aspect, situation.state);
-            if candidate.aspects.iter().all(is_known) {
-                candidate.tally.add(0.0, None);
-                continue;
+        let undecided = || candidates.iter().filter(|candidate| !candidate.is_decided);
+        let signals: Vec<(&[AspectId], f64)> = undecided().map(|one| (&one.aspects[..], one.probability)).collect();
+        let Some((lane, others)) = self.lanes.split_first_mut() else { return false };
+        let (context, signals, draws) = (&context, &signals[..], &self.batch[..]);
+        let batch = Batch { context, situation, signals, draws, next: AtomicUsize::new(0), proceed };
+        match &self.threads {
+            None => lane.run(cost, &batch),
+            Some(threads) => {
+                let mut beside: Vec<CostToGo> = others.iter().map(|_| cost.beside()).collect();
+                threads.in_place_scope(|scope| {
+                    for (lane, cost) in others.iter_mut().zip(&mut beside) {
+                        scope.spawn(|_| lane.run(cost, &batch));
+                    }
+                    lane.run(cost, &batch);
+                });
+                beside.iter().for_each(|other| cost.add_counts(other));
             }
-            if !is_baseline_known {
-                self.state.begin(&self.kitchen, situation, &self.believed, sees);
-                rollout.baseline(&mut self.state, &mut self.baseline);
-                is_baseline_known = true;
-            }
-            let outcome = rollout.with_signal(&mut self.state, &candidate.aspects, &self.baseline);
-            // A human who misses the signal saves exactly nothing by the signal.
-            let saved = candidate.probability * f64::from(self.baseline.value - outcome.value);
-            candidate.tally.add(saved, outcome.diverged);
         }
+        let signals = signals.len();
+        let mut rollouts: Vec<_> = self.lanes.iter().flat_map(|lane| lane.rollouts(signals)).collect();
+        rollouts.sort_unstable_by_key(|(index, _)| *index);
+        for (_, outcomes) in &rollouts {
+            let undecided = candidates.iter_mut().filter(|candidate| !candidate.is_decided);
+            for (candidate, outcome) in undecided.zip(*outcomes) {
+                candidate.tally.add(outcome.saved, outcome.diverged);
+            }
+        }
+        rollouts.len() == self.batch.len()
     }
 
     /// Whether the net benefit of every signal is known with enough certainty, or surely too small to matter.
@@ -176,26 +203,25 @@ impl Planner {
         candidates.iter().all(|candidate| candidate.is_decided)
     }
 
-    /// The candidates with their estimated savings, from as many rollouts as `proceed` allowed, which is asked before
-    /// each.
+    /// The candidates with their estimated savings. `proceed` is asked before each rollout; when it refuses, the
+    /// savings are of no use.
     fn compared(
         &mut self,
         cost: &mut CostToGo,
         moment: &DecisionPoint,
         mut candidates: Vec<Candidate>,
-        proceed: &mut dyn FnMut() -> bool,
+        proceed: &(dyn Fn() -> bool + Sync),
     ) -> Vec<Candidate> {
         let situation = &moment.situation;
         let mut random = stream(self.seed, "communication", u64::from(moment.presses));
         let rollouts = self.spec.rollout.rollouts;
         self.samples.prepare(situation.belief, rollouts, self.spec.rollout.states, &mut random);
         let lattice = QuasiRandomLattice::shifted(&mut random);
-        for number in 0..rollouts {
-            if !proceed() {
-                break;
-            }
-            self.roll_out(cost, situation, &mut candidates, number, &lattice, &mut random);
-            if (number + 1) % BATCH == 0 && self.is_decided(&mut candidates, number + 1) {
+        for first in (0..rollouts).step_by(BATCH) {
+            let end = rollouts.min(first + BATCH);
+            self.draw(situation, first..end, &lattice, &mut random);
+            let finished = self.roll_out(cost, situation, &mut candidates, proceed);
+            if !finished || self.is_decided(&mut candidates, end) {
                 break;
             }
         }
@@ -246,7 +272,7 @@ impl Planner {
         matters_above: impl Fn(&Signal) -> f64,
     ) -> Vec<SignalOption> {
         let candidates = self.candidates(moment, matters_above);
-        let compared = self.compared(cost, moment, candidates, &mut || true);
+        let compared = self.compared(cost, moment, candidates, &|| true);
         self.options(&ranked(compared))
     }
 }
@@ -261,12 +287,20 @@ impl Concept for Planner {
     /// Estimates the net benefit of the available signals and ranks the signals by their net benefit.
     fn advise(&mut self, cost: &mut CostToGo, moment: &DecisionPoint) -> Recommendation {
         let candidates = self.candidates(moment, |_| f64::NEG_INFINITY);
-        let candidates = self.compared(cost, moment, candidates, &mut || true);
+        let candidates = self.compared(cost, moment, candidates, &|| true);
         self.recommendation(&moment.situation, candidates, Recommendation::silent(moment.seq, moment.time))
     }
 
-    fn work_ahead(&mut self, cost: &mut CostToGo, moment: &DecisionPoint, proceed: &mut dyn FnMut() -> bool) {
+    fn work_ahead(&mut self, cost: &mut CostToGo, moment: &DecisionPoint, proceed: &(dyn Fn() -> bool + Sync)) {
         self.prepare_for_presses(cost, moment, proceed);
+    }
+
+    fn use_threads(&mut self, threads: usize) {
+        let others = threads.clamp(1, MOST_LANES) - 1;
+        let start = || rayon::ThreadPoolBuilder::new().num_threads(others).build().ok();
+        // On a system that gives no threads, the same answers come from one.
+        self.threads = if others > 0 { start().map(Arc::new) } else { None };
+        self.lanes.resize_with(1 + self.threads.as_ref().map_or(0, |_| others), Lane::default);
     }
 }
 

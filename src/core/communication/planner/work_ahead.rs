@@ -12,7 +12,7 @@ use super::sample::QuasiRandomLattice;
 use crate::base::rng::stream;
 use crate::communication::concept::{DecisionPoint, RobotIntent, Situation};
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
-use crate::kitchen::{Agent, AspectId, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
+use crate::kitchen::{Agent, AspectId, ButtonId, DishId, Kitchen, LocationId, OrderContent, State, WeightedWorlds};
 use crate::mind::choice::HumanChoice;
 use crate::mind::dirichlet::DirichletBelief;
 
@@ -46,7 +46,7 @@ impl Planner {
         &mut self,
         cost: &mut CostToGo,
         moment: &DecisionPoint,
-        proceed: &mut dyn FnMut() -> bool,
+        proceed: &(dyn Fn() -> bool + Sync),
     ) {
         let presses = self.likely_presses(cost, moment, proceed).into_iter().map(NextChange::HumanPress);
         let changes = std::iter::once(NextChange::RobotPress).chain(presses).chain(self.new_orders(moment));
@@ -67,18 +67,19 @@ impl Planner {
         &mut self,
         cost: &mut CostToGo,
         moment: &DecisionPoint,
-        proceed: &mut dyn FnMut() -> bool,
+        proceed: &(dyn Fn() -> bool + Sync),
     ) -> Vec<ButtonId> {
         let mut random = stream(self.seed, "work-ahead", u64::from(moment.presses));
         let mut counts = [0usize; MAX_BUTTONS];
         self.samples.prepare(moment.situation.belief, SAMPLES, self.spec.rollout.states, &mut random);
         let lattice = QuasiRandomLattice::shifted(&mut random);
+        let mut believed = WeightedWorlds::default();
         for number in 0..SAMPLES {
             if !proceed() {
                 return Vec::new();
             }
-            self.samples.draw(&self.kitchen, moment.situation.state, number, &mut random, &mut self.believed);
-            let weights = choice_weights(&self.choice, cost, &self.believed);
+            self.samples.draw(&self.kitchen, moment.situation.state, number, &mut random, &mut believed);
+            let weights = choice_weights(&self.choice, cost, &believed);
             let [draw, ..] = lattice.point(number);
             if let HumanChoice::Press(button) = self.choice.intended(&weights, draw) {
                 counts[button.index()] += 1;

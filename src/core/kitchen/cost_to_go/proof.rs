@@ -95,7 +95,7 @@ impl CostToGo {
             return known;
         }
         let Some((slot, _)) = self.key_of_state(state, targets) else { return known };
-        let Some(goal) = self.goals[slot].clone() else { return known };
+        let Some(goal) = self.goal(slot).cloned() else { return known };
         let classes = self.classes(&goal, state);
         if floor(&self.ground, &goal, &classes) >= presses {
             return known;
@@ -116,7 +116,7 @@ impl ProofSearch<'_> {
     ) -> ProvenCost {
         self.meet(slot, goal, start, 0);
         while let Some(next) = self.open.pop().filter(|next| next.bound.0 < self.best) {
-            let Some(goal) = self.costs.goals[next.slot].clone() else { continue };
+            let Some(goal) = self.costs.goal(next.slot).cloned() else { continue };
             let key = self.costs.key(next.slot, &goal, &next.state);
             if self.seen.get(&key).is_some_and(|&least| least < next.presses) {
                 continue;
@@ -154,8 +154,7 @@ impl ProofSearch<'_> {
         let mut state = open.state;
         state[self.costs.ground.plate] = 0;
         let slot = self.costs.slot(&rest);
-        self.costs.make_goal(slot, &rest);
-        let Some(rest) = self.costs.goals[slot].clone() else { return };
+        let rest = self.costs.make_goal(slot, &rest).clone();
         let mut classes: CompactState = [0; 16];
         for location in self.costs.ground.places() {
             classes[location] = rest.class_of[goal.content[usize::from(state[location])].index()];

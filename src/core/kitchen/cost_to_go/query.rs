@@ -86,7 +86,7 @@ impl CostToGo {
                 return (lower, Some(upper));
             }
         }
-        let Some(goal) = self.goals[slot].clone() else { return (UNREACHABLE, None) };
+        let Some(goal) = self.goal(slot).cloned() else { return (UNREACHABLE, None) };
         let classes = self.classes(&goal, state);
         let rating = RankedAssignments::new(&self.ground, &goal, &classes);
         let lower = known.unwrap_or_else(|| self.keep(Fidelity::LowerBound, key, rating.lower));
@@ -114,7 +114,7 @@ impl CostToGo {
 
     /// Whether a search finds a solution with fewer than `limit` presses.
     fn has_way(&mut self, slot: usize, state: State, lower: u32, limit: u32) -> bool {
-        let Some(goal) = self.goals[slot].clone() else { return false };
+        let Some(goal) = self.goal(slot).cloned() else { return false };
         let classes = self.classes(&goal, state);
         self.counts.searches += 1;
         let mut finds = |reach| BestFirstSearch::finds(self, slot, &goal, &classes, limit, reach);
@@ -131,7 +131,7 @@ impl CostToGo {
     /// Cost to go of the state and after every button of `agent`; one cache look-up if the decision was computed
     /// before.
     #[inline]
-    pub fn decision(&mut self, state: State, recipes: &Recipes, agent: Agent) -> &DecisionCosts {
+    pub fn decision(&mut self, state: State, recipes: &Recipes, agent: Agent) -> DecisionCosts {
         self.decision_with(Fidelity::Searched, state, recipes, agent)
     }
 
@@ -144,20 +144,19 @@ impl CostToGo {
         state: State,
         recipes: &Recipes,
         agent: Agent,
-    ) -> &DecisionCosts {
+    ) -> DecisionCosts {
         let (mut targets, count) = self.targets(state, recipes);
         let question = question(&targets, fidelity, agent);
-        let (index, known) = self.decisions.find(state, question);
-        if !known {
-            let alike = self.stand_in(state, &mut targets[..count]);
-            let (there, known) = self.decisions.find(alike, question);
-            if !known {
-                self.decide(there, question, fidelity, alike, recipes, agent);
-            }
-            let found = *self.decisions.get(there);
-            self.decisions.set(index, state, question, found.here, found.after);
+        if let Some(known) = self.decisions.get(state, question) {
+            return known;
         }
-        self.decisions.get(index)
+        let alike = self.stand_in(state, &mut targets[..count]);
+        let costs = match self.decisions.get(alike, question) {
+            Some(known) => known,
+            None => self.decide(question, fidelity, alike, recipes, agent),
+        };
+        self.decisions.set(state, question, &costs);
+        costs
     }
 
     /// Prefetches the cache line of a decision that will be requested soon.
@@ -194,8 +193,7 @@ impl CostToGo {
             return state;
         }
         let slot = self.slot(targets);
-        self.make_goal(slot, targets);
-        let Some(goal) = &self.goals[slot] else { return state };
+        let goal = self.make_goal(slot, targets);
         let mut alike = state;
         for location in self.ground.places() {
             let location = LocationId(location as u8);
@@ -206,20 +204,21 @@ impl CostToGo {
 
     fn decide(
         &mut self,
-        index: usize,
         question: u32,
         fidelity: Fidelity,
         state: State,
         recipes: &Recipes,
         agent: Agent,
-    ) {
+    ) -> DecisionCosts {
         self.counts.decisions_missed += 1;
         let (here, after) = match fidelity {
             Fidelity::Searched => self.each(Fidelity::Searched, state, recipes, agent),
             Fidelity::PlanBound => self.close(state, recipes, agent),
             Fidelity::LowerBound => self.each(Fidelity::LowerBound, state, recipes, agent),
         };
-        self.decisions.set(index, state, question, here, after);
+        let costs = DecisionCosts { here, after };
+        self.decisions.set(state, question, &costs);
+        costs
     }
 
     fn each(&mut self, fidelity: Fidelity, state: State, recipes: &Recipes, agent: Agent) -> (u8, [u8; MAX_BUTTONS]) {
@@ -286,7 +285,7 @@ impl CostToGo {
     /// The cache key of a state, computed incrementally from the key of another state with the same orders.
     #[inline]
     fn moved(&self, slot: usize, key: u64, from: State, to: State) -> u64 {
-        let Some(goal) = &self.goals[slot] else { return key };
+        let Some(goal) = self.goal(slot) else { return key };
         let mut differs = from.bits() ^ to.bits();
         let mut moved = key;
         while differs != 0 {

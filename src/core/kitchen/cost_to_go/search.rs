@@ -224,7 +224,7 @@ impl<'a> BestFirstSearch<'a> {
 
 impl CostToGo {
     pub(super) fn compute_for(&mut self, fidelity: Fidelity, key: u64, slot: usize, state: State) -> u32 {
-        let Some(goal) = self.goals[slot].clone() else { return UNREACHABLE };
+        let Some(goal) = self.goal(slot).cloned() else { return UNREACHABLE };
         let classes = self.classes(&goal, state);
         self.compute(fidelity, key, slot, &goal, &classes)
     }
@@ -260,8 +260,7 @@ impl CostToGo {
             return 0;
         }
         let slot = self.slot(&rest);
-        self.make_goal(slot, &rest);
-        let Some(rest) = self.goals[slot].clone() else { return UNREACHABLE };
+        let rest = self.make_goal(slot, &rest).clone();
         let mut classes: CompactState = [0; 16];
         for location in self.ground.places() {
             classes[location] = rest.class_of[goal.content[usize::from(state[location])].index()];

@@ -1,6 +1,7 @@
 //! The data of [`CostToGo`]: tables of the kitchen, tables of goals, and caches.
 
-use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering, fence};
+use std::sync::{Arc, OnceLock};
 
 use super::Fidelity;
 use super::goal::ServingGoal;
@@ -19,20 +20,20 @@ pub(super) const SLOT_BITS: u32 = 16 + KIND_BITS;
 /// Largest number of joint contents of all locations other than orders, for which the remaining bits of a key are enough.
 pub(crate) const MAX_STATES: u128 = 1 << (KEY_BITS - SLOT_BITS);
 
-/// Computes costs to go of a kitchen's states, with caches.
+/// Computes costs to go of a kitchen's states, with caches. Clones share the caches, also between threads.
 #[derive(Clone, Debug)]
 pub struct CostToGo {
     pub(super) kitchen: Arc<Kitchen>,
-    pub(super) ground: KitchenTables,
+    pub(super) ground: Arc<KitchenTables>,
     /// The goals by `[first target * contents + second target]` (0 for no second target), created on demand.
-    pub(super) goals: Vec<Option<Arc<ServingGoal>>>,
-    pub(super) cache: ValueCache,
-    pub(super) decisions: DecisionCache,
+    goals: Arc<[OnceLock<Arc<ServingGoal>>]>,
+    pub(super) cache: Arc<ValueCache>,
+    pub(super) decisions: Arc<DecisionCache>,
     /// Reused buffer for the successor states of a decision.
     pub(super) nexts: Vec<SuccessorState>,
     pub(super) counts: EvaluationCounts,
     /// `[agent][content]`: whether an agent can take the content again after throwing it away.
-    pub(super) takes: [Vec<bool>; 2],
+    pub(super) takes: Arc<[Vec<bool>; 2]>,
     pub(super) trashes: [bool; 2],
 }
 
@@ -69,19 +70,19 @@ impl CostToGo {
     /// A cost-to-go evaluator for this kitchen, with empty caches.
     pub fn new(kitchen: Arc<Kitchen>) -> CostToGo {
         let ground = KitchenTables::new(&kitchen);
-        let goals = vec![None; kitchen.contents.len() * kitchen.contents.len()];
-        let (cache, decisions) = (ValueCache::new(CACHE_BITS), DecisionCache::new(DECISION_BITS));
+        let goals = (0..kitchen.contents.len() * kitchen.contents.len()).map(|_| OnceLock::new()).collect();
+        let (cache, decisions) = (ValueCache::new(CACHE_BITS).into(), DecisionCache::new(DECISION_BITS).into());
         let has = |agent: Agent, action| kitchen.buttons[agent.index()].iter().any(|button| button.action == action);
         let takes = |agent| {
             let has = |item| has(agent, ButtonAction::Take(ContentId(item as u8)));
             (0..kitchen.contents.len()).map(has).collect()
         };
         CostToGo {
-            takes: Agent::BOTH.map(takes),
+            takes: Agent::BOTH.map(takes).into(),
             trashes: Agent::BOTH.map(|agent| has(agent, ButtonAction::Trash)),
             counts: EvaluationCounts::default(),
             kitchen,
-            ground,
+            ground: ground.into(),
             goals,
             cache,
             decisions,
@@ -92,6 +93,20 @@ impl CostToGo {
     /// Counters of cache look-ups and computations since the start.
     pub fn counts(&self) -> EvaluationCounts {
         self.counts
+    }
+
+    /// An evaluator for another thread, with the same caches and counters of its own.
+    pub(crate) fn beside(&self) -> CostToGo {
+        CostToGo { counts: EvaluationCounts::default(), ..self.clone() }
+    }
+
+    /// Adds the counters of an evaluator that was used beside this one.
+    pub(crate) fn add_counts(&mut self, of: &CostToGo) {
+        let EvaluationCounts { decisions_missed, values, values_missed, searches } = of.counts;
+        self.counts.decisions_missed += decisions_missed;
+        self.counts.values += values;
+        self.counts.values_missed += values_missed;
+        self.counts.searches += searches;
     }
 
     /// The stacks (dishes) that the present orders want, in the order of the orders, and their number.
@@ -113,9 +128,8 @@ impl CostToGo {
     pub(super) fn key_of_state(&mut self, state: State, targets: &mut [ContentId]) -> Option<(usize, u64)> {
         targets.sort_unstable();
         let slot = self.slot(targets);
-        self.make_goal(slot, targets);
-        let goal = self.goals[slot].as_ref()?;
-        Some((slot, goal.key_of_state(state) << SLOT_BITS | (slot << KIND_BITS) as u64))
+        let key = self.make_goal(slot, targets).key_of_state(state);
+        Some((slot, key << SLOT_BITS | (slot << KIND_BITS) as u64))
     }
 
     pub(super) fn key(&self, slot: usize, goal: &ServingGoal, state: &CompactState) -> u64 {
@@ -127,12 +141,17 @@ impl CostToGo {
         targets[0].index() * self.kitchen.contents.len() + second
     }
 
+    /// The goal of these target dishes, whose slot this is.
     #[inline]
-    pub(super) fn make_goal(&mut self, slot: usize, targets: &[ContentId]) {
-        if self.goals[slot].is_none() {
-            let goal = ServingGoal::new(&self.kitchen, &self.ground, targets.to_vec());
-            self.goals[slot] = Some(Arc::new(goal));
-        }
+    pub(super) fn make_goal(&self, slot: usize, targets: &[ContentId]) -> &Arc<ServingGoal> {
+        let make = || Arc::new(ServingGoal::new(&self.kitchen, &self.ground, targets.to_vec()));
+        self.goals[slot].get_or_init(make)
+    }
+
+    /// The goal of this slot, if it was asked for before.
+    #[inline]
+    pub(super) fn goal(&self, slot: usize) -> Option<&Arc<ServingGoal>> {
+        self.goals[slot].get()
     }
 
     pub(super) fn classes(&self, goal: &ServingGoal, state: State) -> CompactState {
@@ -175,7 +194,8 @@ impl CostToGo {
     }
 }
 
-// Caches of fixed size. Values that were evicted are recomputed, so a full cache costs time but never correctness.
+// Caches of fixed size, which several threads can use at once. Values that were evicted are recomputed, so a full cache
+// costs time but never correctness; nor does it matter which of two threads that meet keeps its value.
 
 /// Largest number of buttons of one agent.
 pub const MAX_BUTTONS: usize = 40;
@@ -190,116 +210,178 @@ pub(crate) const KEY_BITS: u32 = u64::BITS - u8::BITS;
 /// mapped before use.
 const EMPTY: u64 = u64::MAX;
 
-/// Bucket of eight cache entries; an entry is a key with the value in the lowest byte, or [`EMPTY`].
+/// Bucket of eight cache entries; an entry is a key with the value in the lowest byte, or [`EMPTY`]. Key and value stand
+/// in one word, so that no thread reads half of an entry.
 ///
 /// A bucket has the size of a cache line. It is not aligned to one: that made no look-up faster, and glibc's allocator
 /// hardly ever uses a freed block again for an aligned one of the same size, so that every copy of a cache made the heap
 /// larger.
-#[derive(Clone, Copy, Debug)]
-struct Bucket([u64; 8]);
+#[derive(Debug)]
+struct Bucket([AtomicU64; 8]);
 
 /// Cache of one-byte values by keys of [`KEY_BITS`] bits, not all of them set, in buckets of eight entries.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct ValueCache {
     buckets: Vec<Bucket>,
     mask: u64,
     /// Counter that selects the cache entry to evict.
-    turn: usize,
+    turn: AtomicUsize,
 }
 
 impl ValueCache {
     pub fn new(bits: u32) -> ValueCache {
         let buckets = 1usize << (bits - 3);
-        ValueCache { buckets: vec![Bucket([EMPTY; 8]); buckets], mask: buckets as u64 - 1, turn: 0 }
+        let bucket = || Bucket(std::array::from_fn(|_| AtomicU64::new(EMPTY)));
+        ValueCache {
+            buckets: (0..buckets).map(|_| bucket()).collect(),
+            mask: buckets as u64 - 1,
+            turn: AtomicUsize::new(0),
+        }
     }
 
     #[inline]
-    fn bucket(&self, key: u64) -> usize {
-        (mix(key >> KIND_BITS) & self.mask) as usize
+    fn bucket(&self, key: u64) -> &[AtomicU64; 8] {
+        &self.buckets[(mix(key >> KIND_BITS) & self.mask) as usize].0
     }
 
     /// Prefetches the bucket of a key from memory. Callers with several keys prefetch all of them first; the result
     /// must be passed to a black box so that the compiler keeps the load.
     #[inline]
     pub fn fetch(&self, key: u64) -> u64 {
-        self.buckets[self.bucket(key)].0[0]
+        self.bucket(key)[0].load(Ordering::Relaxed)
     }
 
     #[inline]
     pub fn get(&self, key: u64) -> Option<u32> {
-        let Bucket(bucket) = &self.buckets[self.bucket(key)];
-        let entry = bucket.iter().find(|&&entry| entry >> 8 == key)?;
+        let entries = self.bucket(key).iter().map(|entry| entry.load(Ordering::Relaxed));
+        let entry = entries.into_iter().find(|entry| entry >> 8 == key)?;
         Some((entry & 0xff) as u32)
     }
 
     /// Caches a value under this key, which may evict another value.
-    pub fn insert(&mut self, key: u64, value: u32) {
+    pub fn insert(&self, key: u64, value: u32) {
         let bucket = self.bucket(key);
-        let Bucket(bucket) = &mut self.buckets[bucket];
-        let known = bucket.iter().position(|&entry| entry >> 8 == key);
-        let place = known.or_else(|| bucket.iter().position(|&entry| entry == EMPTY)).unwrap_or_else(|| {
-            self.turn = (self.turn + 1) % 8;
-            self.turn
+        let has =
+            |wanted: fn(u64, u64) -> bool| bucket.iter().position(|entry| wanted(entry.load(Ordering::Relaxed), key));
+        let known = has(|entry, key| entry >> 8 == key);
+        let place = known.or_else(|| has(|entry, _| entry == EMPTY)).unwrap_or_else(|| {
+            let turn = (self.turn.load(Ordering::Relaxed) + 1) % 8;
+            self.turn.store(turn, Ordering::Relaxed);
+            turn
         });
-        bucket[place] = key << 8 | u64::from(value.min(0xff) as u8);
+        bucket[place].store(key << 8 | u64::from(value.min(0xff) as u8), Ordering::Relaxed);
     }
 }
 
-/// Costs to go for one decision: of the present state, and after each button of an agent. It has the size of a cache
-/// line.
+/// Costs to go for one decision: of the present state, and after each button of an agent.
 #[derive(Clone, Copy, Debug)]
-#[repr(C)]
 pub struct DecisionCosts {
-    state: State,
-    /// Hash of the request (orders, fidelity, agent); `u32::MAX` for an empty entry.
-    question: u32,
     /// Cost to go of the present state.
     pub here: u8,
     /// Cost to go after each button; equal to `here` where the button's press has no effect.
     pub after: [u8; MAX_BUTTONS],
 }
 
-/// Cache of decisions by state and request, a line of 64 bytes each; a new entry replaces the old one in its line.
-#[derive(Clone, Debug)]
+/// Words of a decision in a line of the cache: the state, and the costs after each button.
+const STATE_WORDS: usize = 2;
+const AFTER_WORDS: usize = MAX_BUTTONS / 8;
+
+/// A line of 64 bytes of the cache of decisions. `head` has, from the lowest bit, `here` (8 bits), the hash of the request
+/// (32 bits; all set in an empty line), whether a thread is writing (1 bit), and the number of writings (23 bits): a
+/// sequence lock (Boehm 2012, "Can seqlocks get along with programming language memory models?").
+#[derive(Debug)]
+struct DecisionLine {
+    head: AtomicU64,
+    state: [AtomicU64; STATE_WORDS],
+    after: [AtomicU64; AFTER_WORDS],
+}
+
+const WRITING: u64 = 1 << 40;
+
+fn zeros<const N: usize>() -> [AtomicU64; N] {
+    std::array::from_fn(|_| AtomicU64::new(0))
+}
+
+impl DecisionLine {
+    fn empty() -> DecisionLine {
+        DecisionLine { head: AtomicU64::new(u64::from(u32::MAX) << 8), state: zeros(), after: zeros() }
+    }
+
+    #[inline]
+    fn get(&self, state: [u64; STATE_WORDS], question: u32) -> Option<DecisionCosts> {
+        let head = self.head.load(Ordering::Acquire);
+        if (head >> 8) as u32 != question || head & WRITING != 0 {
+            return None;
+        }
+        if self.state.iter().zip(state).any(|(word, state)| word.load(Ordering::Relaxed) != state) {
+            return None;
+        }
+        let mut after = [0; MAX_BUTTONS];
+        for (bytes, word) in after.chunks_exact_mut(8).zip(&self.after) {
+            bytes.copy_from_slice(&word.load(Ordering::Relaxed).to_le_bytes());
+        }
+        fence(Ordering::Acquire);
+        (self.head.load(Ordering::Relaxed) == head).then_some(DecisionCosts { here: head as u8, after })
+    }
+
+    /// Keeps a decision, unless another thread is writing.
+    fn set(&self, state: [u64; STATE_WORDS], question: u32, costs: &DecisionCosts) {
+        let head = self.head.load(Ordering::Relaxed);
+        let locked = head | WRITING;
+        if head & WRITING != 0
+            || self.head.compare_exchange(head, locked, Ordering::Acquire, Ordering::Relaxed).is_err()
+        {
+            return;
+        }
+        fence(Ordering::Release);
+        for (word, state) in self.state.iter().zip(state) {
+            word.store(state, Ordering::Relaxed);
+        }
+        for (word, bytes) in self.after.iter().zip(costs.after.chunks_exact(8)) {
+            word.store(bytes.iter().rev().fold(0, |word, &byte| word << 8 | u64::from(byte)), Ordering::Relaxed);
+        }
+        let written = (locked >> 41).wrapping_add(1) << 41;
+        self.head.store(written | u64::from(question) << 8 | u64::from(costs.here), Ordering::Release);
+    }
+}
+
+/// Cache of decisions by state and request (orders, fidelity, agent); a new entry replaces the old one in its line.
+#[derive(Debug)]
 pub struct DecisionCache {
-    lines: Vec<DecisionCosts>,
+    lines: Vec<DecisionLine>,
     mask: u64,
 }
 
 impl DecisionCache {
     pub fn new(bits: u32) -> DecisionCache {
-        let empty = DecisionCosts { state: State::default(), question: u32::MAX, here: 0, after: [0; MAX_BUTTONS] };
-        DecisionCache { lines: vec![empty; 1 << bits], mask: (1 << bits) - 1 }
+        DecisionCache { lines: (0..1 << bits).map(|_| DecisionLine::empty()).collect(), mask: (1 << bits) - 1 }
     }
 
     #[inline]
-    fn index(&self, state: State, question: u32) -> usize {
-        let bits = state.bits();
-        let hash = mix(bits as u64 ^ mix((bits >> 64) as u64 ^ u64::from(question) << 32));
-        (hash & self.mask) as usize
+    fn line(&self, [low, high]: [u64; STATE_WORDS], question: u32) -> &DecisionLine {
+        &self.lines[(mix(low ^ mix(high ^ u64::from(question) << 32)) & self.mask) as usize]
     }
 
     /// Prefetches the line of a decision; the result must be passed to a black box so that the compiler keeps the load.
     #[inline]
-    pub fn fetch(&self, state: State, question: u32) -> u32 {
-        self.lines[self.index(state, question)].question
+    pub fn fetch(&self, state: State, question: u32) -> u64 {
+        self.line(words(state), question).head.load(Ordering::Relaxed)
     }
 
-    /// Index of a decision's cache line, and whether the decision is stored there.
     #[inline]
-    pub fn find(&self, state: State, question: u32) -> (usize, bool) {
-        let index = self.index(state, question);
-        let line = &self.lines[index];
-        (index, line.question == question && line.state == state)
+    pub fn get(&self, state: State, question: u32) -> Option<DecisionCosts> {
+        let state = words(state);
+        self.line(state, question).get(state, question)
     }
 
-    /// The cache entry at this index, whichever decision it holds.
-    #[inline]
-    pub fn get(&self, index: usize) -> &DecisionCosts {
-        &self.lines[index]
+    pub fn set(&self, state: State, question: u32, costs: &DecisionCosts) {
+        let state = words(state);
+        self.line(state, question).set(state, question, costs);
     }
+}
 
-    pub fn set(&mut self, index: usize, state: State, question: u32, here: u8, after: [u8; MAX_BUTTONS]) {
-        self.lines[index] = DecisionCosts { state, question, here, after };
-    }
+#[inline]
+fn words(state: State) -> [u64; STATE_WORDS] {
+    let bits = state.bits();
+    [bits as u64, (bits >> 64) as u64]
 }

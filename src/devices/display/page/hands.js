@@ -67,7 +67,12 @@ const Hands = (() => {
     if (event.target instanceof HTMLTextAreaElement && (event.key !== "Enter" || event.isComposing)) return;
     const isHeld = event.repeat || down.has(event.code || event.key);
     down.add(event.code || event.key);
-    const question = Stage.shown() && Stage.shown().question;
+    const question = Stage.shown() && Stage.shown().question, focused = focusedButton(event.key);
+    // A button that was reached by the tab key is what the enter key presses.
+    if (focused) {
+      event.preventDefault();
+      return isHeld || act(focused, timeOf(event.timeStamp)) || focused.click();
+    }
     if (question) {
       if (["Enter", " ", "Home", "End", "ArrowUp", "ArrowDown"].includes(event.key)) event.preventDefault();
       Questions.key(event.key, question, isHeld);
@@ -90,16 +95,31 @@ const Hands = (() => {
     return isHeld || press(button.name, timeOf(event.timeStamp));
   }
 
-  function touched(event) {
-    const hit = event.target.closest("[data-button], [data-rate], [data-option], [data-typed], [data-does], [data-review], [data-turn], [data-choose], [data-believe], [data-unknown], [data-sure]");
-    if (!hit || event.button > 0) return;
-    event.preventDefault();
+  const ACTS = "[data-button], [data-rate], [data-option], [data-typed], [data-does], [data-review], [data-turn], [data-choose], [data-believe], [data-unknown], [data-sure]";
+
+  /** The button that a key presses since it has the focus; what is held to consent is no such button. */
+  function focusedButton(name) {
+    const { activeElement: focused } = document;
+    return ["Enter", " "].includes(name) && focused instanceof HTMLButtonElement && !focused.matches(".hold") ? focused : null;
+  }
+
+  /** Does what a button is for; returns whether it is one of the page's. */
+  function act(hit, at) {
+    if (!hit.matches(ACTS)) return false;
     const question = Stage.shown() && Stage.shown().question;
     const lesson = Stage.shown() && Stage.shown().tutorial;
     if (Stage.asks()) Probe.touch(hit.dataset);
     else if (lesson && (hit.dataset.turn || hit.dataset.choose)) Tutorial.touch(hit.dataset, lesson);
-    else if (hit.dataset.button) press(hit.dataset.button, timeOf(event.timeStamp));
+    else if (hit.dataset.button) press(hit.dataset.button, at);
     else if (question) Questions.touch(hit.dataset, question);
+    return true;
+  }
+
+  function touched(event) {
+    const hit = event.target.closest(ACTS);
+    if (!hit || event.button > 0) return;
+    event.preventDefault();
+    act(hit, timeOf(event.timeStamp));
   }
 
   /** Reads gamepads and button boxes, which send no events of their own. */

@@ -170,6 +170,11 @@ const Probe = (() => {
     } else {
       button("unknown", 0, words["probe unknown"]);
     }
+    // What is asked beside the choices stays in its line, between the tags.
+    for (let size = 1; size > 0.5; size -= 0.02) {
+      row.style.setProperty("--sure", size);
+      if (row.scrollWidth <= row.clientWidth + 1) break;
+    }
     parts.buttons = [...all.querySelectorAll("button")];
     all.classList.toggle("told", isTold);
   }
@@ -227,8 +232,9 @@ const Probe = (() => {
     if (!step && !["Enter", " "].includes(name)) return false;
     if (!shown || shown.closed || !parts.buttons.length || isTold) return true;
     const at = parts.all.querySelector(".at");
-    if (step) mark(at && parts.buttons.includes(at) ? next(at, step) : parts.buttons[0]);
-    else if (at && !isHeld) {
+    // The first key of any kind shows where the keys are.
+    if (step || !at) mark(at && parts.buttons.includes(at) ? next(at, step) : parts.buttons[0]);
+    else if (!isHeld) {
       const { believe } = at.dataset, { className } = at;
       touch(at.dataset);
       // The buttons below have been drawn anew, so the marked one is restored.

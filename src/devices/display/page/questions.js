@@ -44,7 +44,7 @@ const Questions = (() => {
       card.append(text("p", "count", `${question.number} / ${question.of}`), text("p", "item", question.text));
       if (question.form) card.append(...FORMS[question.form.kind](question, words, kit));
     } else {
-      card.append(text("p", "item", question.text));
+      card.append(text("p", "item", question.text), text("p", "hint", words.review));
       const given = element("ol", question.given.length > 6 ? "given small" : "given");
       for (const { item, text: asked, answer } of question.given) {
         const line = element("li", ""), row = element("button", "");
@@ -65,7 +65,7 @@ const Questions = (() => {
     };
     if (question.before) button("back", words.back);
     if (question.item) button("skip", words.skip);
-    if (question.item) button("next", words.next, question.answer !== null || isTyped(question));
+    if (question.item) button("next", words.next, isAnswered(question) || isTyped(question));
     else button("confirm", words.confirm);
     card.append(row);
     sheet.replaceChildren(card);
@@ -82,6 +82,8 @@ const Questions = (() => {
     setTimeout(() => { if (shownItem === now) delete sheet.dataset.settles; }, SETTLES_MS);
   }
 
+  /** Several options that were all taken back are no answer. */
+  const isAnswered = ({ answer }) => answer !== null && answer.length !== 0;
   const isTyped = ({ form }) => form && ["number", "text"].includes(form.kind);
 
   /** A rating scale or slider with its end labels below the first and the last point. */
@@ -157,7 +159,12 @@ const Questions = (() => {
         button.addEventListener(end, () => hold("touch", false));
       }
       const hint = text("p", "hint asks", words["consent text"]), not = text("button", "declines", words.decline);
-      not.addEventListener("click", () => { tell({ kind: "decline" }); hint.textContent = words.declined; });
+      not.addEventListener("click", () => {
+        tell({ kind: "decline" });
+        not.classList.add("chosen");
+        hint.textContent = words.declined;
+        hint.classList.add("told");
+      });
       const row = element("div", "choosing", button);
       row.append(not);
       return [reading, row, hint];
@@ -194,7 +201,7 @@ const Questions = (() => {
   /** Goes on to the next item, with the typed answer or with the answer that was given before. */
   function next(question) {
     const typed = isTyped(question) ? pending(question) : null;
-    if (typed === null && question.answer === null) return chosen ? chosen() : Stage.say(isTyped(question) ? "first type" : "tutorial first question");
+    if (typed === null && !isAnswered(question)) return chosen ? chosen() : Stage.say(isTyped(question) ? "first type" : "tutorial first question");
     if (typed === null) return tell({ kind: "next" });
     const words = inOneLine(typed);
     if (!words) return Stage.say("first type");
@@ -221,6 +228,7 @@ const Questions = (() => {
   function type(question, key) {
     const typed = pending(question) ?? String(question.answer ?? "");
     const next = key === "⌫" ? typed.slice(0, -1) : pending(question) === null ? key : typed + key;
+    Stage.say("");
     if (next.length <= LONGEST_ENTRY) keep(question, next);
     redraw();
   }
@@ -243,6 +251,7 @@ const Questions = (() => {
     clearTimeout(agrees);
     tell({ kind: "hold", held: isDown });
     const hint = document.querySelector(".hint.asks");
+    document.querySelectorAll(".declines").forEach((not) => not.classList.remove("chosen"));
     if (hint && isDown) [hint.textContent, heldFrom] = ["", performance.now()];
     else if (hint && performance.now() - heldFrom < 1000 * hint.parentNode.querySelector(".hold").dataset.seconds) hint.textContent = Stage.scene().words["consent short"];
     if (isDown) agrees = setTimeout(() => tell({ kind: "consent" }), 1000 * seconds);
@@ -279,6 +288,7 @@ const Questions = (() => {
   /** Scrolls a text that is longer than its area. */
   function read(name) {
     const rows = { ArrowDown: 1, ArrowUp: -1, PageDown: 8, PageUp: -8 }[name] || 0;
+    if ([...name].length === 1) Stage.say("nothing");
     document.querySelectorAll(".reading").forEach((reading) => reading.scrollBy(0, rows * 40));
   }
 

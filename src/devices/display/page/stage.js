@@ -431,9 +431,9 @@ const Stage = (() => {
     parts.toast.className = `toast ${isLost ? "open says-lost" : parts.toast.textContent ? "open" : ""}`;
   }
 
-  /** Says something that is about no place. */
+  /** Says something that is about no place; nothing takes back what was said. */
   function say(name) {
-    if (shown && marks.acts) Reason.say(scene.words[name], root, { room, put, replay, text });
+    if (shown && marks.acts) Reason.say(name ? scene.words[name] : "", root, { room, put, replay, text });
   }
 
   /** What was pressed does nothing, or, where it is one of the kitchen's buttons, nothing yet. */

@@ -117,7 +117,13 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
             page.ask(f"({FORGED})({json.dumps(hold)})")
             console.wait_for("its button was not held long enough")
         # Who does not agree says so, which the console is told; nothing begins.
-        click(".declines")
+        # With the focus on "I do not agree", the enter key says so too, however long it is held.
+        page.page.focus(".declines")
+        keyboard.down("Enter")
+        page.wait_for("document.querySelector('.declines').classList.contains('chosen')")
+        page.page.wait_for_timeout(3500)
+        keyboard.up("Enter")
+        item("consent")
         console.wait_for("I do not agree")
         page.page.reload()
         item("consent")
@@ -178,6 +184,11 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         answer(["none"])
         click('[data-option="lenses"]')
         answer(["lenses"])
+        # What was taken back wholly is no answer.
+        click('[data-option="lenses"]')
+        answer([])
+        assert page.ask("document.querySelector('.next').getAttribute('aria-disabled')") == "true"
+        click('[data-option="lenses"]')
         keyboard.press("2")
         answer(["glasses", "lenses"])
         pictures("several")
@@ -234,6 +245,15 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         click('[data-does="next"]')
         page.wait_for("!Stage.shown().question.item")
         page.page.wait_for_timeout(400)
+        # The enter key presses what has the focus: a row, and "Back".
+        for focused in ('[data-review="cooking"]', '[data-does="back"]'):
+            page.page.focus(focused)
+            keyboard.press("Enter")
+            page.wait_for("Stage.shown().question.item")
+            item("cooking" if "review" in focused else "eye_tracking")
+            click('[data-does="next"]')
+            page.wait_for("!Stage.shown().question.item")
+            page.page.wait_for_timeout(400)
         keyboard.press("Enter")
         page.stage("answered")
         pictures("thanks")

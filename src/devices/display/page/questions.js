@@ -185,7 +185,8 @@ const Questions = (() => {
       slider.addEventListener("pointerdown", (event) => { slider.setPointerCapture(event.pointerId); drag(event); });
       slider.addEventListener("pointermove", (event) => slider.hasPointerCapture(event.pointerId) && drag(event));
       slider.addEventListener("pointerup", (event) => { drag(event); give(question, draft.value); });
-      return [anchored(slider, form.low, form.high, kit)];
+      const hint = kit.text("p", "hint", position(question) === null ? words.slider : "\u00a0");
+      return [anchored(slider, form.low, form.high, kit), hint];
     },
   };
 

@@ -22,6 +22,7 @@ import socket
 import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
+from functools import cache
 from typing import Any, TextIO
 
 PROTOCOL = 1
@@ -49,9 +50,14 @@ class Signal:
         return f"{self.kind} {self.target}"
 
 
+@cache
+def _names(kind: type) -> frozenset[str]:
+    return frozenset(one.name for one in fields(kind))
+
+
 def _known(kind: type, told: Mapping[str, Any]) -> dict[str, Any]:
     """Only what the class knows: a later version of the protocol may tell more."""
-    names = {one.name for one in fields(kind)}
+    names = _names(kind)
     return {name: value for name, value in told.items() if name in names}
 
 

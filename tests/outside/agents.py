@@ -230,7 +230,7 @@ def check_port() -> None:
 
 
 def check_faults() -> None:
-    """A program with an error in it: the last line of its traceback is told."""
+    """A program with an error in it: where and what is told."""
     (SCRATCH / "broken.py").write_text(
         f"import sys; sys.path.insert(0, {str(PACKAGE)!r})\n"
         "from tomcom.agent import Concept, run\n"
@@ -238,8 +238,8 @@ def check_faults() -> None:
     )
     arguments = ["simulate", "session.toml", "--condition", "assistant", "--concept", f"{PYTHON} broken.py"]
     told = tomcom(*arguments, "--trials", "2", "--out", SCRATCH / "broken")
-    assert "2 trials were aborted" in told and "AttributeError" in told, told
-    print("faults: a traceback is told")
+    assert "2 trials were aborted" in told and "broken.py:5: AttributeError: " in told, told
+    print("faults: an error is told with its line")
 
 
 def figures() -> None:

@@ -20,9 +20,11 @@ import json
 import random
 import socket
 import sys
+import traceback
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
 from functools import cache
+from pathlib import Path
 from typing import Any, TextIO
 
 PROTOCOL = 1
@@ -326,6 +328,13 @@ def run(mind: Concept | Participant) -> None:
 
 
 def _serve(mind: Concept | Participant, questions: TextIO, out: TextIO) -> None:
-    for answer in answers(mind, questions):
-        out.write(answer + "\n")
-        out.flush()
+    try:
+        for answer in answers(mind, questions):
+            out.write(answer + "\n")
+            out.flush()
+    except Exception as error:
+        traceback.print_exc()
+        # The last line is what tomcom tells: it says where.
+        frames = traceback.extract_tb(error.__traceback__)
+        place = next((one for one in reversed(frames) if one.filename != __file__), frames[-1])
+        sys.exit(f"{Path(place.filename).name}:{place.lineno}: {type(error).__name__}: {error}")

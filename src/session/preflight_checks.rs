@@ -102,6 +102,23 @@ fn human_model(session: &Session) -> Option<PreflightCheck> {
     (*human != HumanModel::default()).then(|| PreflightCheck::ok("human model", human.named()))
 }
 
+/// Whether the program that advises has begun, and is still there.
+fn external_concept(session: &Session) -> Option<PreflightCheck> {
+    let mind = session.spec.external_concept()?;
+    Some(match (&session.external.over, &session.external.name) {
+        (Some(found), _) => {
+            let remedy = "quit tomcom, and try in a shell whether the command starts; without it the trial has no signals \
+                          of this concept";
+            PreflightCheck::new("concept", PreflightVerdict::Failed, found, remedy)
+        }
+        (None, Some(name)) => PreflightCheck::ok("concept", format!("{name} answers")),
+        (None, None) => {
+            let found = format!("no answer yet of {}", mind.external);
+            PreflightCheck::new("concept", PreflightVerdict::Warning, found, "wait until the program has started")
+        }
+    })
+}
+
 /// Whether the participant reads the tutorial in another language than the rest of the page.
 fn tutorial(session: &Session) -> Option<PreflightCheck> {
     let (tutorial, page) = (session.foreign_tutorial()?, session.spec.display.code());
@@ -134,6 +151,7 @@ pub fn participant(
     let mut checks: Vec<PreflightCheck> = condition(session).into_iter().collect();
     checks.push(PreflightCheck::ok("participant", format!("{}, {who}", spec.code)));
     checks.extend(human_model(session));
+    checks.extend(external_concept(session));
     checks.extend(tutorial(session));
     match spec.gaze {
         GazeSource::Simulated => checks.push(PreflightCheck::ok("gaze", "simulated gaze: it comes with the trial")),

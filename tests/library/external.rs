@@ -16,6 +16,7 @@ use tomcom_session::external::{
     SCHEMA,
 };
 use tomcom_session::headless::{Outside, run_with};
+use tomcom_session::preflight_checks::{self, PreflightVerdict};
 use tomcom_session::watcher::{SenderComparisonFollower, SenderComparisonSettings};
 use tomcom_study::tournament::Tournament;
 
@@ -649,6 +650,29 @@ fn live_a_silence_is_told_once_until_an_answer_comes() {
     assert!(matches!(&told[..], [Event::External(ExternalEvent::Fault { fault: MindFault::Silent, .. })]), "{told:?}");
     assert!(matches!(&dialogue.take(r#"{"id":20}"#).events[..], [Event::Advised(_)]));
     assert_eq!(silences(&mut dialogue, &questions[20..]).len(), 1, "a new silence is told again");
+}
+
+#[test]
+fn whether_the_program_is_there_is_checked_before_the_trial() {
+    let mut engine = engine_of(files(30.0, ExternalMind::new("python my_agent.py")), 0);
+    let check = |engine: &SessionEngine| {
+        let checks = preflight_checks::participant(engine.session(), SessionTime::ZERO, "g", None);
+        let found = checks.into_iter().find(|check| check.name == "concept").expect("a check of the program");
+        (found.verdict, found.found)
+    };
+    assert_eq!(check(&engine), (PreflightVerdict::Warning, "no answer yet of python my_agent.py".to_string()));
+    let mut take = |event| {
+        let _ = engine.input(SessionTime::ZERO, Event::External(event));
+        check(&engine)
+    };
+    let began = ExternalEvent::Began { role: MindRole::Concept, name: "mine".to_string() };
+    assert_eq!(take(began.clone()), (PreflightVerdict::Ok, "mine answers".to_string()));
+    let fault = |fault, found: &str| ExternalEvent::Fault { role: MindRole::Concept, fault, found: found.to_string() };
+    assert_eq!(take(fault(MindFault::Malformed, "rubbish")).0, PreflightVerdict::Ok, "it can still answer");
+    let (verdict, found) = take(fault(MindFault::Ended, "exit code 2: no such file"));
+    assert_eq!(verdict, PreflightVerdict::Failed);
+    assert_eq!(found, "external concept has ended: exit code 2: no such file");
+    assert_eq!(take(began).0, PreflightVerdict::Ok, "a continued recording starts it again");
 }
 
 #[test]

@@ -201,6 +201,9 @@ fn closed(session: &Session, model: &ConsoleModel) -> Option<String> {
 /// What the line of the offer says while nothing is on offer. While the trial runs, its text changes only when a belief
 /// becomes false or true.
 fn why_no_offer(session: &Session, model: &ConsoleModel, believed: &[EstimatedBelief]) -> String {
+    if let Some(over) = &session.external.over {
+        return over.clone();
+    }
     if session.spec.trial.condition == Condition::Assistant {
         let reason = session.shown.as_ref().and_then(|shown| shown.reason.as_ref());
         let may_see = beliefs::visibility(session, model) == WizardVisibility::Recommendation;

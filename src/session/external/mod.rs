@@ -130,6 +130,8 @@ impl ExternalEvent {
 pub struct ExternalStatus {
     /// The name by which the concept introduced itself.
     pub name: Option<String>,
+    /// Why the concept answers no more, in words.
+    pub over: Option<String>,
     /// The last belief that each told, by [`MindRole`].
     pub beliefs: BTreeMap<MindRole, ToldBelief>,
     pub faults: u64,
@@ -140,13 +142,20 @@ pub struct ExternalStatus {
 impl ExternalStatus {
     pub(crate) fn apply(&mut self, event: &ExternalEvent) {
         match event {
-            ExternalEvent::Began { role: MindRole::Concept, name } => self.name = Some(name.clone()),
+            ExternalEvent::Began { role: MindRole::Concept, name } => {
+                (self.name, self.over) = (Some(name.clone()), None);
+            }
             ExternalEvent::Began { .. } => {}
             ExternalEvent::Believes { role, belief, .. } => {
                 self.beliefs.insert(*role, belief.clone());
             }
             ExternalEvent::Late { .. } => self.late += 1,
-            ExternalEvent::Fault { .. } => self.faults += 1,
+            ExternalEvent::Fault { role, fault, .. } => {
+                self.faults += 1;
+                if *role == MindRole::Concept && fault.is_final() {
+                    self.over = event.words();
+                }
+            }
         }
     }
 }

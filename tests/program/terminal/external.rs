@@ -42,6 +42,9 @@ fn programs_that_crash_flood_and_hang_leave_the_session_running() {
         terminal.operate("default.toml", &["--condition", "assistant", "--concept", program]);
         terminal.begin();
         terminal.wait(told, || terminal.count(told) > 0);
+        if name == "crash" {
+            terminal.see("external concept has ended: exit code 3: oh dear");
+        }
         let presses = || terminal.count("\"kind\":\"press\"");
         let before = presses();
         terminal.wait("the session goes on", || presses() > before + 3);

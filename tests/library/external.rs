@@ -10,7 +10,8 @@ use tomcom::run::tournament::{self, TournamentRequest};
 use tomcom_core::communication::settings::{ConceptSpec, ExternalMind};
 use tomcom_devices::external::LocalMinds;
 use tomcom_session::advisor::AdviceRequest;
-use tomcom_session::external::concept::ConceptDialogue;
+use tomcom_session::external::concept::{ConceptDialogue, DialogueOutcome};
+use tomcom_session::external::participant::ParticipantDialogue;
 use tomcom_session::external::{
     ExternalEvent, ExternalMinds, MOST_FAULTS, MindConnection, MindFault, MindNews, MindReader, MindRole, MindWriter,
     SCHEMA,
@@ -588,6 +589,39 @@ fn a_participants_wrong_answers_are_recorded_and_it_waits() {
     setup.spec.participant.external = Some("echo no; exit 5".to_string());
     let (_, events) = run_participant(setup, &LocalMinds);
     assert!(aborted(&events).is_some_and(|reason| reason.contains("external participant")), "{events:?}");
+}
+
+#[test]
+fn a_participant_that_is_not_waited_for_has_one_question_at_a_time() {
+    let mut engine = engine_of(with_participant(30.0), 0);
+    let mut dialogue = ParticipantDialogue::new("x y");
+    let second = SessionTime::from_secs_f64;
+    let told = |outcome: DialogueOutcome| match &outcome.events[..] {
+        [Event::External(event)] => event.clone(),
+        other => panic!("{other:?}"),
+    };
+    let display = |number: u64| move || json!(number);
+    let _ = engine.input(SessionTime::ZERO, Event::TrialStarted);
+    let session = engine.session();
+    assert_eq!(dialogue.question(session, second(1.0), display(1)), None, "it has not begun");
+    let began = told(dialogue.take(session, r#"{"id":0,"protocol":1,"name":"slow"}"#));
+    assert_eq!(began, ExternalEvent::Began { role: MindRole::Participant, name: "slow".to_string() });
+    assert!(dialogue.question(session, second(1.0), display(1)).is_some_and(|line| line.contains("\"id\":1,")));
+    assert_eq!(dialogue.question(session, second(2.0), display(2)), None, "the first question has no answer yet");
+    assert_eq!(dialogue.silence(second(10.0)), DialogueOutcome::default());
+    assert!(matches!(told(dialogue.silence(second(11.0))), ExternalEvent::Fault { fault: MindFault::Silent, .. }));
+    assert_eq!(dialogue.silence(second(12.0)), DialogueOutcome::default(), "told once");
+    // Its press is timed from the question, so it is due already.
+    assert_eq!(dialogue.take(session, r#"{"id":1,"press":"trash","after_s":2.0}"#), DialogueOutcome::default());
+    assert_eq!(dialogue.due(session), Some(second(3.0)));
+    assert_eq!(dialogue.question(session, second(13.0), display(3)), None, "a press is under way");
+    assert_eq!(dialogue.act(session).len(), 1);
+    let twice = told(dialogue.take(session, r#"{"id":1}"#));
+    assert!(matches!(twice, ExternalEvent::Fault { fault: MindFault::Unasked, .. }));
+    assert!(dialogue.question(session, second(13.0), display(3)).is_some_and(|line| line.contains("\"id\":2,")));
+    let over = dialogue.failed(MindFault::Ended, "exit code 1");
+    assert!(over.ends && dialogue.due(session).is_none());
+    assert_eq!(dialogue.take(session, r#"{"id":2,"press":"trash"}"#), DialogueOutcome::default());
 }
 
 #[test]

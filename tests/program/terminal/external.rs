@@ -43,7 +43,8 @@ fn a_program_takes_the_participants_part_until_it_fails() {
     let settings = format!("layout = {layout:?}\nseed = 1\n[robot]\narm = \"timed\"\n[participant]\n{participant}");
     fs::write(&session, settings).expect("a session file");
     terminal.run(&["operate", &session, "--out", &terminal.recordings()]);
-    terminal.see("external participant began: mine");
+    terminal.see("READY");
+    terminal.wait("its name", || terminal.count("\"role\":\"participant\",\"name\":\"mine\"") > 0);
     terminal.begin();
     terminal.wait("its end", || terminal.count("exit code 4: tired") > 0);
     assert_eq!(terminal.count("\"kind\":\"press\",\"agent\":\"human\""), 3);

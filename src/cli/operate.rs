@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::choices::{ArmArg, ConditionArg, ParticipantArg, concept, gaze_parser};
-use super::failure::{Failure, wrong_argument, wrong_setting};
+use super::failure::{Failure, wrong_setting};
 use super::lab::tell_carried;
 use super::output::{put, put_aside};
 use crate::run::files;
@@ -116,10 +116,6 @@ pub(super) fn new_session(
         rerun_listen: flags.rerun_listen.clone(),
     };
     overrides.apply(&mut files).map_err(wrong_setting)?;
-    if files.spec.participant.kind == ParticipantKind::External {
-        let found = "a session with an external participant".to_string();
-        return Err(wrong_argument(name, found, "tomcom simulate, or --participant with a person or a simulated one"));
-    }
     files.spec.require_built_live().map_err(|missing| FileError::not_built(name, missing))?;
     let out = flags.out.clone();
     if flags.code.is_none() && files.spec.plan.is_none() {

@@ -12,18 +12,19 @@ use tomcom_session::Event;
 use tomcom_session::advisor::AdviceRequest;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::external::concept::{ConceptDialogue, DialogueOutcome};
-use tomcom_session::external::{ExternalMinds, MindFault, MindNews, MindReader, MindWriter};
+use tomcom_session::external::{ExternalMinds, MindConnection, MindFault, MindNews, MindReader, MindWriter};
 
 /// Number of lines that wait for the event loop; a program that sends more has to wait.
-const QUEUE: usize = 64;
+pub(super) const QUEUE: usize = 64;
 /// Period in which the reading thread looks whether the session still wants lines.
 const LOOKS: Duration = Duration::from_millis(200);
 
-/// What comes back from whoever advises.
+/// What comes back from whoever advises, and from a program in the participant's place.
 #[derive(Debug)]
 pub(super) enum AssistantNews {
     Advice(Box<Recommendation>),
     External(MindNews),
+    Participant(MindNews),
 }
 
 /// A live session's connection to whoever advises.
@@ -65,7 +66,7 @@ impl AssistantLink {
         match (self, news) {
             (_, AssistantNews::Advice(advice)) => vec![Event::Advised(*advice)],
             (AssistantLink::External(concept), AssistantNews::External(news)) => concept.take(news),
-            (AssistantLink::Own(_), AssistantNews::External(_)) => Vec::new(),
+            (AssistantLink::Own(_), AssistantNews::External(_)) | (_, AssistantNews::Participant(_)) => Vec::new(),
         }
     }
 }
@@ -93,12 +94,10 @@ impl ExternalConcept {
         let session = engine.session();
         let mut dialogue = ConceptDialogue::new(session, mind);
         let (sender, news) = channel(QUEUE);
-        match minds.open(mind) {
-            Ok(connection) => {
+        match open(minds, mind, sender) {
+            Ok(to) => {
                 let begin = dialogue.begin(session);
-                let mut from = connection.from;
-                thread::spawn(move || forward(&mut *from, &sender));
-                let mut concept = ExternalConcept { dialogue, to: Some(connection.to), news };
+                let mut concept = ExternalConcept { dialogue, to: Some(to), news };
                 let events = concept.send(begin);
                 (concept, events)
             }
@@ -143,13 +142,28 @@ impl ExternalConcept {
     }
 
     fn after(&mut self, outcome: DialogueOutcome) -> Vec<Event> {
-        if outcome.ends
-            && let Some(to) = self.to.take()
-        {
-            // Ending a program can take a second, for which the console does not wait.
-            thread::spawn(move || drop(to));
+        if outcome.ends {
+            end(self.to.take());
         }
         outcome.events
+    }
+}
+
+/// Opens a connection whose lines go to `news`.
+pub(super) fn open(
+    minds: &dyn ExternalMinds,
+    mind: &ExternalMind,
+    news: Sender<MindNews>,
+) -> Result<Box<dyn MindWriter>, String> {
+    let MindConnection { to, mut from } = minds.open(mind)?;
+    thread::spawn(move || forward(&mut *from, &news));
+    Ok(to)
+}
+
+/// Ends a program, which can take a second, for which the console does not wait.
+pub(super) fn end(program: Option<Box<dyn MindWriter>>) {
+    if let Some(to) = program {
+        thread::spawn(move || drop(to));
     }
 }
 

@@ -27,6 +27,7 @@ pub mod near_path;
 pub mod open_viewer;
 mod operator_station;
 pub mod options;
+mod participant_link;
 pub mod picture_file;
 pub mod plan;
 mod rater_files;

@@ -127,7 +127,7 @@ pub fn run_with<E>(
             take(engine, participant.look(engine.session(), outside.minds), &mut record)?;
             let next = engine.next_due().unwrap_or(engine.session().time);
             // A press that was due while the task stood still is made when it goes on.
-            if let Some(due) = participant.due().filter(|due| engine.session().is_running() && *due < next) {
+            if let Some(due) = participant.due(engine.session()).filter(|due| *due < next) {
                 let at = due.max(engine.session().time);
                 for event in participant.act(engine.session()) {
                     engine.input(at, event).events.iter().try_for_each(&mut record)?;

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::Session;
+use crate::external::MindRole;
 use crate::gaze_samples::{DUPLICATE, MALFORMED, TOO_FREQUENT, faults};
 use crate::settings::{Condition, GazeSource, ParticipantKind};
 use crate::stream_settings::LslGazeSpec;
@@ -102,6 +103,22 @@ fn human_model(session: &Session) -> Option<PreflightCheck> {
     (*human != HumanModel::default()).then(|| PreflightCheck::ok("human model", human.named()))
 }
 
+/// Whether an external mind has begun, and is still there.
+fn external_mind(session: &Session, role: MindRole, command: &str) -> PreflightCheck {
+    let external = &session.external;
+    match (external.over.get(&role), external.names.get(&role)) {
+        (Some(found), _) => {
+            let remedy = "quit tomcom, and try in a shell whether the command starts; the trial would go on without it";
+            PreflightCheck::new(role.name(), PreflightVerdict::Failed, found, remedy)
+        }
+        (None, Some(name)) => PreflightCheck::ok(role.name(), format!("{name} answers")),
+        (None, None) => {
+            let found = format!("no answer yet of {command}");
+            PreflightCheck::new(role.name(), PreflightVerdict::Warning, found, "wait until the program has started")
+        }
+    }
+}
+
 /// Whether the participant reads the tutorial in another language than the rest of the page.
 fn tutorial(session: &Session) -> Option<PreflightCheck> {
     let (tutorial, page) = (session.foreign_tutorial()?, session.spec.display.code());
@@ -133,7 +150,11 @@ pub fn participant(
     };
     let mut checks: Vec<PreflightCheck> = condition(session).into_iter().collect();
     checks.push(PreflightCheck::ok("participant", format!("{}, {who}", spec.code)));
+    let participant = spec.external.as_ref();
+    checks.extend(participant.map(|command| external_mind(session, MindRole::Participant, command)));
     checks.extend(human_model(session));
+    let concept = session.spec.external_concept();
+    checks.extend(concept.map(|mind| external_mind(session, MindRole::Concept, &mind.external)));
     checks.extend(tutorial(session));
     match spec.gaze {
         GazeSource::Simulated => checks.push(PreflightCheck::ok("gaze", "simulated gaze: it comes with the trial")),

@@ -10,12 +10,14 @@ use tomcom::run::tournament::{self, TournamentRequest};
 use tomcom_core::communication::settings::{ConceptSpec, ExternalMind};
 use tomcom_devices::external::LocalMinds;
 use tomcom_session::advisor::AdviceRequest;
-use tomcom_session::external::concept::ConceptDialogue;
+use tomcom_session::external::concept::{ConceptDialogue, DialogueOutcome};
+use tomcom_session::external::participant::ParticipantDialogue;
 use tomcom_session::external::{
     ExternalEvent, ExternalMinds, MOST_FAULTS, MindConnection, MindFault, MindNews, MindReader, MindRole, MindWriter,
     SCHEMA,
 };
 use tomcom_session::headless::{Outside, run_with};
+use tomcom_session::preflight_checks::{self, PreflightVerdict};
 use tomcom_session::watcher::{SenderComparisonFollower, SenderComparisonSettings};
 use tomcom_study::tournament::Tournament;
 
@@ -590,6 +592,39 @@ fn a_participants_wrong_answers_are_recorded_and_it_waits() {
 }
 
 #[test]
+fn a_participant_that_is_not_waited_for_has_one_question_at_a_time() {
+    let mut engine = engine_of(with_participant(30.0), 0);
+    let mut dialogue = ParticipantDialogue::new("x y");
+    let second = SessionTime::from_secs_f64;
+    let told = |outcome: DialogueOutcome| match &outcome.events[..] {
+        [Event::External(event)] => event.clone(),
+        other => panic!("{other:?}"),
+    };
+    let display = |number: u64| move || json!(number);
+    let _ = engine.input(SessionTime::ZERO, Event::TrialStarted);
+    let session = engine.session();
+    assert_eq!(dialogue.question(session, second(1.0), display(1)), None, "it has not begun");
+    let began = told(dialogue.take(session, r#"{"id":0,"protocol":1,"name":"slow"}"#));
+    assert_eq!(began, ExternalEvent::Began { role: MindRole::Participant, name: "slow".to_string() });
+    assert!(dialogue.question(session, second(1.0), display(1)).is_some_and(|line| line.contains("\"id\":1,")));
+    assert_eq!(dialogue.question(session, second(2.0), display(2)), None, "the first question has no answer yet");
+    assert_eq!(dialogue.silence(second(10.0)), DialogueOutcome::default());
+    assert!(matches!(told(dialogue.silence(second(11.0))), ExternalEvent::Fault { fault: MindFault::Silent, .. }));
+    assert_eq!(dialogue.silence(second(12.0)), DialogueOutcome::default(), "told once");
+    // Its press is timed from the question, so it is due already.
+    assert_eq!(dialogue.take(session, r#"{"id":1,"press":"trash","after_s":2.0}"#), DialogueOutcome::default());
+    assert_eq!(dialogue.due(session), Some(second(3.0)));
+    assert_eq!(dialogue.question(session, second(13.0), display(3)), None, "a press is under way");
+    assert_eq!(dialogue.act(session).len(), 1);
+    let twice = told(dialogue.take(session, r#"{"id":1}"#));
+    assert!(matches!(twice, ExternalEvent::Fault { fault: MindFault::Unasked, .. }));
+    assert!(dialogue.question(session, second(13.0), display(3)).is_some_and(|line| line.contains("\"id\":2,")));
+    let over = dialogue.failed(MindFault::Ended, "exit code 1");
+    assert!(over.ends && dialogue.due(session).is_none());
+    assert_eq!(dialogue.take(session, r#"{"id":2,"press":"trash"}"#), DialogueOutcome::default());
+}
+
+#[test]
 fn settings_of_an_external_participant_go_together() {
     let read = |text: &str| SessionSpec::from_toml(&format!("layout = \"x.toml\"\n[participant]\n{text}"));
     let right = "kind = \"external\"\nexternal = \"python a.py\"\ngaze = \"none\"";
@@ -649,6 +684,29 @@ fn live_a_silence_is_told_once_until_an_answer_comes() {
     assert!(matches!(&told[..], [Event::External(ExternalEvent::Fault { fault: MindFault::Silent, .. })]), "{told:?}");
     assert!(matches!(&dialogue.take(r#"{"id":20}"#).events[..], [Event::Advised(_)]));
     assert_eq!(silences(&mut dialogue, &questions[20..]).len(), 1, "a new silence is told again");
+}
+
+#[test]
+fn whether_the_program_is_there_is_checked_before_the_trial() {
+    let mut engine = engine_of(files(30.0, ExternalMind::new("python my_agent.py")), 0);
+    let check = |engine: &SessionEngine| {
+        let checks = preflight_checks::participant(engine.session(), SessionTime::ZERO, "g", None);
+        let found = checks.into_iter().find(|check| check.name == "concept").expect("a check of the program");
+        (found.verdict, found.found)
+    };
+    assert_eq!(check(&engine), (PreflightVerdict::Warning, "no answer yet of python my_agent.py".to_string()));
+    let mut take = |event| {
+        let _ = engine.input(SessionTime::ZERO, Event::External(event));
+        check(&engine)
+    };
+    let began = ExternalEvent::Began { role: MindRole::Concept, name: "mine".to_string() };
+    assert_eq!(take(began.clone()), (PreflightVerdict::Ok, "mine answers".to_string()));
+    let fault = |fault, found: &str| ExternalEvent::Fault { role: MindRole::Concept, fault, found: found.to_string() };
+    assert_eq!(take(fault(MindFault::Malformed, "rubbish")).0, PreflightVerdict::Ok, "it can still answer");
+    let (verdict, found) = take(fault(MindFault::Ended, "exit code 2: no such file"));
+    assert_eq!(verdict, PreflightVerdict::Failed);
+    assert_eq!(found, "external concept has ended: exit code 2: no such file");
+    assert_eq!(take(began).0, PreflightVerdict::Ok, "a continued recording starts it again");
 }
 
 #[test]

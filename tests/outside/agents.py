@@ -111,6 +111,24 @@ def check_messages(schema: dict) -> None:
     print(f"messages: {len(told)} questions and their answers fit the schema")
 
 
+def check_alone() -> None:
+    """An agent needs nothing but Python: no package of another project is there, and none is asked for."""
+    blocked = SCRATCH / "blocked"
+    blocked.mkdir(exist_ok=True)
+    for name in ("pandas", "numpy"):
+        (blocked / f"{name}.py").write_text(f"raise ImportError('an agent imports {name}')\n")
+    found = simulated("alone", f"PYTHONPATH={blocked}:{PACKAGE} {PYTHON} -S {AGENTS}/rule.py", trials=1)
+    assert [event["name"] for event in found if event.get("what") == "began"] == ["after 2 errors"]
+    # Whoever reads recordings is told what is missing, and gets everything where it is there.
+    for folders, says in ((f"{blocked}:{PACKAGE}", "an agent imports"), (str(PACKAGE), "Recording")):
+        done = subprocess.run(
+            [PYTHON, "-c", "import tomcom; print(tomcom.Recording)"],
+            env=os.environ | {"PYTHONPATH": folders}, capture_output=True, text=True,
+        )
+        assert says in done.stdout + done.stderr, done
+    print("alone: an agent with nothing but Python")
+
+
 def check_rule() -> None:
     found = simulated("rule", f"{PYTHON} {AGENTS}/rule.py", trials=4)
     reasons = {event.get("words") for event in found if event["kind"] == "advised"} - {None}
@@ -212,7 +230,7 @@ def check_port() -> None:
 
 
 def check_faults() -> None:
-    """A program with an error in it: the last line of its traceback is told."""
+    """A program with an error in it: where and what is told."""
     (SCRATCH / "broken.py").write_text(
         f"import sys; sys.path.insert(0, {str(PACKAGE)!r})\n"
         "from tomcom.agent import Concept, run\n"
@@ -220,8 +238,8 @@ def check_faults() -> None:
     )
     arguments = ["simulate", "session.toml", "--condition", "assistant", "--concept", f"{PYTHON} broken.py"]
     told = tomcom(*arguments, "--trials", "2", "--out", SCRATCH / "broken")
-    assert "2 trials were aborted" in told and "AttributeError" in told, told
-    print("faults: a traceback is told")
+    assert "2 trials were aborted" in told and "broken.py:5: AttributeError: " in told, told
+    print("faults: an error is told with its line")
 
 
 def figures() -> None:
@@ -255,6 +273,7 @@ def main() -> None:
     (SCRATCH / "session.toml").write_text(SESSION)
     schema = check_schema()
     check_messages(schema)
+    check_alone()
     check_rule()
     check_bayes()
     check_chat()

@@ -20,8 +20,11 @@ import json
 import random
 import socket
 import sys
+import traceback
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
+from functools import cache
+from pathlib import Path
 from typing import Any, TextIO
 
 PROTOCOL = 1
@@ -49,9 +52,14 @@ class Signal:
         return f"{self.kind} {self.target}"
 
 
+@cache
+def _names(kind: type) -> frozenset[str]:
+    return frozenset(one.name for one in fields(kind))
+
+
 def _known(kind: type, told: Mapping[str, Any]) -> dict[str, Any]:
     """Only what the class knows: a later version of the protocol may tell more."""
-    names = {one.name for one in fields(kind)}
+    names = _names(kind)
     return {name: value for name, value in told.items() if name in names}
 
 
@@ -320,6 +328,13 @@ def run(mind: Concept | Participant) -> None:
 
 
 def _serve(mind: Concept | Participant, questions: TextIO, out: TextIO) -> None:
-    for answer in answers(mind, questions):
-        out.write(answer + "\n")
-        out.flush()
+    try:
+        for answer in answers(mind, questions):
+            out.write(answer + "\n")
+            out.flush()
+    except Exception as error:
+        traceback.print_exc()
+        # The last line is what tomcom tells: it says where.
+        frames = traceback.extract_tb(error.__traceback__)
+        place = next((one for one in reversed(frames) if one.filename != __file__), frames[-1])
+        sys.exit(f"{Path(place.filename).name}:{place.lineno}: {type(error).__name__}: {error}")

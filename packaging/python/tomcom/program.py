@@ -9,11 +9,12 @@ import subprocess
 import sysconfig
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import pandas
+if TYPE_CHECKING:
+    import pandas
 
-from .recording import Recording
+    from .recording import Recording
 
 PathLike = str | os.PathLike[str]
 
@@ -54,6 +55,8 @@ def options(given: dict[str, Any]) -> list[str]:
 def simulate(session: PathLike, *, out: PathLike, **given: Any) -> list[Recording]:
     """Simulates trials, and returns their recordings. Further arguments are options of `tomcom simulate`: `trials`,
     `seed`, `condition`, `concept`, `arm`, `shadow`, …"""
+    from .recording import Recording
+
     told = run("simulate", session, "--out", out, "--format", "json", *options(given))
     return [Recording(path) for path in json.loads(told)["recordings"]]
 
@@ -77,6 +80,8 @@ class Study:
             there = ", ".join(sorted(one.stem for one in self.folder.glob("*.csv")))
             raise AttributeError(f"no table {name!r} in {self.folder}; there are: {there}")
         if name not in self.tables:
+            import pandas
+
             self.tables[name] = pandas.read_csv(path, low_memory=False)
         return self.tables[name]
 

@@ -23,6 +23,7 @@ use tomcom_core::communication::recommendation::{Recommendation, SignalOption, S
 use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::kitchen::LocationId;
 use tomcom_session::admit::may_send;
+use tomcom_session::external::MindRole;
 use tomcom_session::history::wording;
 use tomcom_session::settings::{Condition, WizardVisibility};
 use tomcom_session::{Session, TrialPhase, offers};
@@ -201,6 +202,9 @@ fn closed(session: &Session, model: &ConsoleModel) -> Option<String> {
 /// What the line of the offer says while nothing is on offer. While the trial runs, its text changes only when a belief
 /// becomes false or true.
 fn why_no_offer(session: &Session, model: &ConsoleModel, believed: &[EstimatedBelief]) -> String {
+    if let Some(over) = session.external.over.get(&MindRole::Concept) {
+        return over.clone();
+    }
     if session.spec.trial.condition == Condition::Assistant {
         let reason = session.shown.as_ref().and_then(|shown| shown.reason.as_ref());
         let may_see = beliefs::visibility(session, model) == WizardVisibility::Recommendation;
@@ -394,7 +398,8 @@ fn cost_line(
         BenefitUnit::None => String::new(),
     };
     // An external concept has a name of its own.
-    let name = session.external.name.as_ref().map_or(String::new(), |name| format!("{}: ", printable(name)));
+    let name =
+        session.external.names.get(&MindRole::Concept).map_or(String::new(), |name| format!("{}: ", printable(name)));
     let left = format!("{name}{left}");
     let quiet = brush.style(TextRole::Quiet);
     let end = brush.text(inside.x, y, inside.width, &left, quiet);

@@ -9,6 +9,7 @@ use crate::run::leaving::LeavingReason;
 use crate::run::operator_station::{PageInput, lost_since};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
+use tomcom_devices::external::LocalMinds;
 use tomcom_devices::gaze_input::TrackerMessage;
 use tomcom_session::history::event_words;
 use tomcom_session::preflight_checks::RejectedGaze;
@@ -51,12 +52,37 @@ impl Live {
 
     /// Takes what came back from whoever advises.
     pub(super) fn take_assistant_news(&mut self, news: AssistantNews) {
-        let events = self.advisor.as_mut().map(|link| link.take(news)).unwrap_or_default();
+        let events = match news {
+            AssistantNews::Participant(line) => {
+                let link = self.participant.as_mut();
+                link.map(|link| link.take(self.engine.session(), line)).unwrap_or_default()
+            }
+            advice => self.advisor.as_mut().map(|link| link.take(advice)).unwrap_or_default(),
+        };
+        events.into_iter().for_each(|event| self.input(event));
+        self.ask_participant();
+    }
+
+    /// Asks a program in the participant's place, if its display changed.
+    pub(super) fn ask_participant(&mut self) {
+        let Some(link) = &mut self.participant else { return };
+        let events = link.look(self.engine.session(), self.clock.now(), &LocalMinds);
         events.into_iter().for_each(|event| self.input(event));
     }
 
-    /// Lets the engine raise due events, and records them.
+    /// When a program in the participant's place presses, or wants to be asked again.
+    pub(super) fn participant_due(&self) -> Option<SessionTime> {
+        self.participant.as_ref().and_then(|link| link.due(self.engine.session()))
+    }
+
+    /// Lets a program in the participant's place do what is due, or the engine raise due events, and records them.
     pub(super) fn fire(&mut self) {
+        let is_due = self.participant_due().is_some_and(|due| due <= self.clock.now());
+        if let Some(link) = self.participant.as_mut().filter(|_| is_due) {
+            let events = link.act(self.engine.session());
+            events.into_iter().for_each(|event| self.input(event));
+            return self.ask_participant();
+        }
         let events = self.engine.fire();
         // Most control cycles of the robot's arm lead to no event.
         if !events.is_empty() {

@@ -21,6 +21,7 @@ use crate::run::key_file::key_map;
 use crate::run::leaving::{LeavingReason, LiveOutcome, TutorialProgress};
 use crate::run::operator_station::{GazeTracker, OperatorStation};
 use crate::run::options::SessionStart;
+use crate::run::participant_link::{ParticipantLink, next_line};
 use crate::run::resume::{PreparedSession, RecordingPlace};
 use crate::run::terminal::{TerminalScreen, theme};
 use tomcom_core::base::time::SessionTime;
@@ -47,6 +48,8 @@ pub(super) struct Live {
     pub(super) engine: SessionEngine,
     /// Connection to whoever advises, if the session requests advice.
     pub(super) advisor: Option<AssistantLink>,
+    /// Connection to a program in the participant's place.
+    pub(super) participant: Option<ParticipantLink>,
     /// The comparison of wizard and assistants, if the console shows it.
     pub(super) comparison: Option<ComparisonThreadHandle>,
     /// The participant's display, if there is one.
@@ -109,7 +112,7 @@ impl ConsoleShell for Live {
         let at = |time| self.clock.instant_of(time).into();
         let resting = if session.is_running() { RUNNING } else { RESTING };
         ShellDeadlines {
-            engine: self.engine.next_due().map(at),
+            engine: self.engine.next_due().into_iter().chain(self.participant_due()).min().map(at),
             target: self.target_due().map(at),
             file_gaze: self.gaze.file_due(session).map(at),
             frame_after: if self.dirty { FRAME } else { resting },
@@ -123,7 +126,10 @@ impl ConsoleShell for Live {
     }
 
     async fn advice(&mut self) -> Option<AssistantNews> {
-        next_news(&mut self.advisor).await
+        tokio::select! {
+            news = next_news(&mut self.advisor) => news,
+            news = next_line(&mut self.participant) => news.map(AssistantNews::Participant),
+        }
     }
 
     fn take(&mut self, event: LoopEvent) -> Result<Option<LeavingReason>, LiveError> {
@@ -187,10 +193,13 @@ impl Live {
         model.gaze_pairing = station.tracker.pairing();
         model.recorded_gaze = station.tracker.file().map(|file| file.summary.clone());
         let clock = SessionClock::start(time);
-        let (advisor, told) = AssistantLink::start(&engine, &LocalMinds);
+        let (advisor, mut told) = AssistantLink::start(&engine, &LocalMinds);
+        let (participant, faults) = ParticipantLink::start(engine.session(), &LocalMinds);
+        told.extend(faults);
         let mut live = Live {
             engine,
             advisor,
+            participant,
             comparison,
             display,
             page_lost: None,

@@ -72,6 +72,7 @@ impl Live {
             viewing.view(events, &self.engine);
         }
         told.into_iter().for_each(|event| self.input(event));
+        self.ask_participant();
     }
 
     /// Has the terminal ring with the next frame, if the session asks for that.

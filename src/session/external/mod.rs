@@ -128,8 +128,10 @@ impl ExternalEvent {
 /// What a session knows of its external minds.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ExternalStatus {
-    /// The name by which the concept introduced itself.
-    pub name: Option<String>,
+    /// The names by which they introduced themselves.
+    pub names: BTreeMap<MindRole, String>,
+    /// Why one answers no more, in words.
+    pub over: BTreeMap<MindRole, String>,
     /// The last belief that each told, by [`MindRole`].
     pub beliefs: BTreeMap<MindRole, ToldBelief>,
     pub faults: u64,
@@ -140,13 +142,20 @@ pub struct ExternalStatus {
 impl ExternalStatus {
     pub(crate) fn apply(&mut self, event: &ExternalEvent) {
         match event {
-            ExternalEvent::Began { role: MindRole::Concept, name } => self.name = Some(name.clone()),
-            ExternalEvent::Began { .. } => {}
+            ExternalEvent::Began { role, name } => {
+                self.names.insert(*role, name.clone());
+                self.over.remove(role);
+            }
             ExternalEvent::Believes { role, belief, .. } => {
                 self.beliefs.insert(*role, belief.clone());
             }
             ExternalEvent::Late { .. } => self.late += 1,
-            ExternalEvent::Fault { .. } => self.faults += 1,
+            ExternalEvent::Fault { role, fault, .. } => {
+                self.faults += 1;
+                if let Some(words) = event.words().filter(|_| fault.is_final()) {
+                    self.over.insert(*role, words);
+                }
+            }
         }
     }
 }

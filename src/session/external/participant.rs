@@ -6,7 +6,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::concept::{AnswerId, introduction, line};
+use super::concept::{AnswerId, DialogueOutcome, introduction, line};
 use super::link::{Exchange, is_of_no_question};
 use super::{
     ExternalEvent, ExternalMinds, MOST_FAULTS, MindConnection, MindFault, MindNews, MindRole, PROTOCOL,
@@ -62,71 +62,61 @@ struct NextMove {
     press: Option<(String, Option<ToldBelief>)>,
 }
 
-/// An external participant that is waited for.
-#[derive(Debug)]
-pub struct WaitedParticipant {
+/// The dialogue of one session with its external participant. It has no connection: it makes lines, and takes lines.
+#[derive(Clone, Debug)]
+pub struct ParticipantDialogue {
     mind: ExternalMind,
-    connection: MindConnection,
+    began: bool,
     asked: u64,
+    /// Whether the last question still waits for its answer.
+    waits: bool,
+    /// When the last question was asked: moves are timed from there.
+    asked_at: SessionTime,
+    /// Whether it was told that the last question has no answer for long.
+    told_silence: bool,
     /// What the display showed at the last question.
     shown: Value,
     next: Option<NextMove>,
     /// When it wanted to be asked again: the session's time stands where nothing happens.
     asked_for: SessionTime,
     faults: u64,
+    is_over: bool,
 }
 
-fn fault(fault: MindFault, found: String) -> Event {
-    Event::External(ExternalEvent::Fault { role: MindRole::Participant, fault, found })
-}
-
-fn failed(kind: MindFault, found: &str) -> Exchange {
-    let event = ExternalEvent::Fault { role: MindRole::Participant, fault: kind, found: recorded_text(found) };
-    Exchange { failed: event.words(), events: vec![Event::External(event)] }
-}
-
-impl WaitedParticipant {
-    /// Starts the program and waits for its first answer.
-    pub fn open(session: &Session, command: &str, minds: &dyn ExternalMinds) -> (Option<WaitedParticipant>, Exchange) {
-        let mind = ExternalMind::new(command);
-        let mut connection = match minds.open(&mind) {
-            Ok(connection) => connection,
-            Err(found) => return (None, failed(MindFault::NotStarted, &found)),
-        };
-        let [scene, _] = minds.sight(session);
-        let (ask, id, protocol, role, seed) = ("begin", 0, PROTOCOL, MindRole::Participant, session.seed() >> 11);
-        let begin = line(&ParticipantBegin { ask, id, protocol, role, seed, scene });
-        let answer = match connection.to.send(begin) {
-            Ok(()) => connection.from.receive(Duration::from_secs_f64(STARTS_WITHIN_S)),
-            Err(found) => MindNews::Over(found),
-        };
-        let name = match answer {
-            MindNews::Line(text) => introduction(&text),
-            MindNews::Nothing => Err((MindFault::Silent, format!("no answer within {STARTS_WITHIN_S} s"))),
-            MindNews::Over(found) => Err((MindFault::Ended, found)),
-        };
-        match name {
-            Err((kind, found)) => (None, failed(kind, &found)),
-            Ok(name) => {
-                let began = Event::External(ExternalEvent::Began { role, name });
-                let shown = Value::Null;
-                let one = WaitedParticipant {
-                    mind,
-                    connection,
-                    asked: 0,
-                    shown,
-                    next: None,
-                    asked_for: SessionTime::ZERO,
-                    faults: 0,
-                };
-                (Some(one), Exchange { events: vec![began], failed: None })
-            }
+impl ParticipantDialogue {
+    pub fn new(command: &str) -> ParticipantDialogue {
+        ParticipantDialogue {
+            mind: ExternalMind::new(command),
+            began: false,
+            asked: 0,
+            waits: false,
+            asked_at: SessionTime::ZERO,
+            told_silence: false,
+            shown: Value::Null,
+            next: None,
+            asked_for: SessionTime::ZERO,
+            faults: 0,
+            is_over: false,
         }
     }
 
-    /// When it presses or wants to be asked again.
-    pub fn due(&self) -> Option<SessionTime> {
-        self.next.as_ref().map(|next| next.at)
+    pub fn mind(&self) -> &ExternalMind {
+        &self.mind
+    }
+
+    pub fn has_begun(&self) -> bool {
+        self.began
+    }
+
+    /// The first question.
+    pub fn begin(&self, session: &Session, scene: Value) -> String {
+        let (role, seed) = (MindRole::Participant, session.seed() >> 11);
+        line(&ParticipantBegin { ask: "begin", id: 0, protocol: PROTOCOL, role, seed, scene })
+    }
+
+    /// When it presses or wants to be asked again, while the trial runs.
+    pub fn due(&self, session: &Session) -> Option<SessionTime> {
+        self.next.as_ref().filter(|_| session.is_running()).map(|next| next.at)
     }
 
     /// The events of the move that is due.
@@ -142,62 +132,84 @@ impl WaitedParticipant {
         belief.into_iter().chain([press]).collect()
     }
 
-    /// Asks it, if the display changed and no press is under way.
-    pub fn look(&mut self, session: &Session, minds: &dyn ExternalMinds) -> Exchange {
-        if !session.is_running() || self.next.as_ref().is_some_and(|next| next.press.is_some()) {
-            return Exchange::default();
+    /// The next question, if the display changed, and neither a press nor an answer is under way.
+    pub fn question(&mut self, session: &Session, now: SessionTime, display: impl FnOnce() -> Value) -> Option<String> {
+        let is_pressing = self.next.as_ref().is_some_and(|next| next.press.is_some());
+        if !session.is_running() || !self.began || self.waits || is_pressing || self.is_over {
+            return None;
         }
-        let [_, display] = minds.sight(session);
+        let display = display();
         if display == self.shown {
-            return Exchange::default();
+            return None;
         }
-        self.shown = display;
-        self.next = None;
+        (self.shown, self.next) = (display, None);
         self.asked += 1;
-        let time_s = session.trial_clock(session.time.max(self.asked_for)).as_secs_f64();
-        let question = line(&ParticipantQuestion { ask: "act", id: self.asked, time_s, display: &self.shown });
-        let news = self.connection.ask(question, Duration::from_secs_f64(self.mind.wait_s));
-        self.take_news(session, news)
+        self.asked_at = now.max(self.asked_for);
+        (self.waits, self.told_silence) = (true, false);
+        let time_s = session.trial_clock(self.asked_at).as_secs_f64();
+        Some(line(&ParticipantQuestion { ask: "act", id: self.asked, time_s, display: &self.shown }))
     }
 
-    /// What nobody asked for is passed over.
-    fn take_news(&mut self, session: &Session, news: MindNews) -> Exchange {
-        match news {
-            MindNews::Line(text) => {
-                let mut taken = self.take(session, &text);
-                if taken.failed.is_none() && taken.events.iter().any(is_of_no_question) {
-                    let news = self.connection.from.receive(Duration::from_secs_f64(self.mind.wait_s));
-                    let Exchange { events, failed } = self.take_news(session, news);
-                    taken.events.extend(events);
-                    taken.failed = failed;
-                }
-                taken
-            }
-            MindNews::Nothing => failed(MindFault::Silent, &format!("no answer within {} s", self.mind.wait_s)),
-            MindNews::Over(found) => failed(MindFault::Ended, &found),
+    /// The fault of a program that leaves a question unanswered for long; told once a question.
+    pub fn silence(&mut self, now: SessionTime) -> DialogueOutcome {
+        let is_long = self.waits && now.secs_since(self.asked_at) >= self.mind.wait_s;
+        if !is_long || self.is_over || std::mem::replace(&mut self.told_silence, true) {
+            return DialogueOutcome::default();
         }
+        self.failed(MindFault::Silent, &format!("no answer for {:.0} s", self.mind.wait_s))
     }
 
-    fn take(&mut self, session: &Session, text: &str) -> Exchange {
+    /// The events of a line that came back.
+    pub fn take(&mut self, session: &Session, text: &str) -> DialogueOutcome {
+        if self.is_over {
+            return DialogueOutcome::default();
+        }
+        if !self.began {
+            return match introduction(text) {
+                Ok(name) => {
+                    self.began = true;
+                    let began = Event::External(ExternalEvent::Began { role: MindRole::Participant, name });
+                    DialogueOutcome { events: vec![began], ends: false }
+                }
+                Err((kind, found)) => self.failed(kind, &found),
+            };
+        }
         match self.next_move(session, text) {
             Ok(next) => {
-                self.next = next;
-                Exchange::default()
+                (self.next, self.waits) = (next, false);
+                DialogueOutcome::default()
             }
             Err((kind, found)) => {
-                self.faults += 1;
-                if self.faults >= MOST_FAULTS {
-                    return failed(MindFault::GivenUp, &format!("{MOST_FAULTS} faults; the last: {found}"));
-                }
-                Exchange { events: vec![fault(kind, recorded_text(&found))], failed: None }
+                // A wrong answer is one to wait: only an answer to no question leaves the question open.
+                self.waits &= kind == MindFault::Unasked;
+                self.failed(kind, &found)
             }
         }
+    }
+
+    /// A fault; too many of them end the dialogue, as does the end of the connection.
+    pub fn failed(&mut self, kind: MindFault, found: &str) -> DialogueOutcome {
+        if self.is_over {
+            return DialogueOutcome::default();
+        }
+        self.faults += 1;
+        let given_up = self.faults >= MOST_FAULTS;
+        self.is_over = given_up || kind.is_final();
+        if self.is_over {
+            self.next = None;
+        }
+        let (fault, found) = match given_up {
+            true => (MindFault::GivenUp, format!("{MOST_FAULTS} faults; the last: {found}")),
+            false => (kind, found.to_string()),
+        };
+        let event = ExternalEvent::Fault { role: MindRole::Participant, fault, found: recorded_text(&found) };
+        DialogueOutcome { events: vec![Event::External(event)], ends: self.is_over }
     }
 
     fn next_move(&self, session: &Session, text: &str) -> Result<Option<NextMove>, (MindFault, String)> {
         let malformed = |found: String| (MindFault::Malformed, found);
         let AnswerId { id } = serde_json::from_str(text).map_err(|error| malformed(format!("{error} in {text}")))?;
-        if id != self.asked {
+        if id != self.asked || !self.waits {
             return Err((MindFault::Unasked, format!("an answer to question {id}")));
         }
         let answer: ParticipantAnswer =
@@ -212,8 +224,7 @@ impl WaitedParticipant {
                 return Err(malformed(format!("a belief without {}; right would be every aspect", left_out.name)));
             }
         }
-        let now = session.time.max(self.asked_for);
-        let at = |after_s: f64| now + SessionTime::from_secs_f64(after_s.max(LEAST_S));
+        let at = |after_s: f64| self.asked_at + SessionTime::from_secs_f64(after_s.max(LEAST_S));
         match answer.press {
             Some(button) if kitchen.button_named(Agent::Human, &button).is_none() => {
                 Err(malformed(format!("a press of {button}, which is no button of the human")))
@@ -223,6 +234,89 @@ impl WaitedParticipant {
                 Ok(Some(NextMove { at: at(answer.after_s.unwrap_or_default()), press }))
             }
             None => Ok(answer.after_s.map(|after_s| NextMove { at: at(after_s), press: None })),
+        }
+    }
+}
+
+/// An external participant that is waited for.
+#[derive(Debug)]
+pub struct WaitedParticipant {
+    dialogue: ParticipantDialogue,
+    connection: MindConnection,
+}
+
+/// A trial without a console cannot go on without its participant.
+fn fatal(outcome: DialogueOutcome) -> Exchange {
+    let failed = outcome.events.iter().rev().find_map(|event| match event {
+        Event::External(event) => event.words(),
+        _ => None,
+    });
+    Exchange { failed, events: outcome.events }
+}
+
+impl WaitedParticipant {
+    /// Starts the program and waits for its first answer.
+    pub fn open(session: &Session, command: &str, minds: &dyn ExternalMinds) -> (Option<WaitedParticipant>, Exchange) {
+        let mut dialogue = ParticipantDialogue::new(command);
+        let mut connection = match minds.open(dialogue.mind()) {
+            Ok(connection) => connection,
+            Err(found) => return (None, fatal(dialogue.failed(MindFault::NotStarted, &found))),
+        };
+        let [scene, _] = minds.sight(session);
+        let news = connection.ask(dialogue.begin(session, scene), Duration::from_secs_f64(STARTS_WITHIN_S));
+        let outcome = match news {
+            MindNews::Line(text) => dialogue.take(session, &text),
+            MindNews::Nothing => dialogue.failed(MindFault::Silent, &format!("no answer within {STARTS_WITHIN_S} s")),
+            MindNews::Over(found) => dialogue.failed(MindFault::Ended, &found),
+        };
+        match dialogue.has_begun() {
+            true => {
+                (Some(WaitedParticipant { dialogue, connection }), Exchange { events: outcome.events, failed: None })
+            }
+            false => (None, fatal(outcome)),
+        }
+    }
+
+    /// When it presses or wants to be asked again.
+    pub fn due(&self, session: &Session) -> Option<SessionTime> {
+        self.dialogue.due(session)
+    }
+
+    /// The events of the move that is due.
+    pub fn act(&mut self, session: &Session) -> Vec<Event> {
+        self.dialogue.act(session)
+    }
+
+    /// Asks it, if the display changed and no press is under way, and waits for its answer. What nobody asked for is
+    /// passed over.
+    pub fn look(&mut self, session: &Session, minds: &dyn ExternalMinds) -> Exchange {
+        let display = || {
+            let [_, display] = minds.sight(session);
+            display
+        };
+        let Some(question) = self.dialogue.question(session, session.time, display) else { return Exchange::default() };
+        let wait_s = self.dialogue.mind().wait_s;
+        let wait = Duration::from_secs_f64(wait_s);
+        let mut news = self.connection.ask(question, wait);
+        let mut events = Vec::new();
+        loop {
+            let DialogueOutcome { events: mut told, ends } = match news {
+                MindNews::Line(text) => self.dialogue.take(session, &text),
+                MindNews::Nothing => {
+                    let silent = self.dialogue.failed(MindFault::Silent, &format!("no answer within {wait_s} s"));
+                    DialogueOutcome { ends: true, ..silent }
+                }
+                MindNews::Over(found) => self.dialogue.failed(MindFault::Ended, &found),
+            };
+            let is_passed_over = !told.is_empty() && told.iter().all(is_of_no_question);
+            events.append(&mut told);
+            if ends {
+                return fatal(DialogueOutcome { events, ends });
+            }
+            if !is_passed_over {
+                return Exchange { events, failed: None };
+            }
+            news = self.connection.from.receive(wait);
         }
     }
 }

@@ -91,7 +91,8 @@ pub enum RecordingWriteError {
     /// The folder that a new recording needs contains something else.
     #[error("{}: {what} is there already", folder.display())]
     #[diagnostic(help(
-        "use another folder, or remove that recording first: only the same session replaces its recording"
+        "use another folder (--out), or remove that recording first: only the same session, with the same settings, replaces \
+         its recording"
     ))]
     Taken { folder: PathBuf, what: String },
 }

@@ -93,7 +93,8 @@ pub fn read(recording: &Path, useful: Option<u64>, kept: &mut KeptCost) -> FileR
     found.summary = TrialSummary::from_follower(&follower);
     found.lost = follower.judged.iter().map(|press| i64::from(press.verdict.regret.max(0))).sum();
     let external = &follower.session.external;
-    (found.name, found.faults, found.late) = (external.name.clone(), external.faults, external.late);
+    (found.name, found.faults, found.late) =
+        (external.names.get(&MindRole::Concept).cloned(), external.faults, external.late);
     found.failed = follower.session.aborted.clone();
     kept.keep(&kitchen, follower.cost);
     found.useful = match (useful, found.summary.signals) {

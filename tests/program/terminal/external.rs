@@ -30,6 +30,31 @@ fn a_wizard_is_offered_what_a_program_recommends_and_it_ends_with_the_session() 
     assert!(stat.is_empty() || stat.contains(") Z "), "{stat}");
 }
 
+/// A participant in `sh` that wants rice three times, and fails then.
+const WANTS_RICE: &str = r#"n=0; while read -r line; do rest=${line#*\"id\":}; id=${rest%%,*}; case $line in *'"ask":"begin"'*) echo '{"id":0,"protocol":1,"name":"mine"}';; *) n=$((n+1)); if [ $n -gt 3 ]; then echo tired >&2; exit 4; fi; echo "{\"id\":$id,\"press\":\"take rice\",\"after_s\":0.2}";; esac; done"#;
+
+#[test]
+fn a_program_takes_the_participants_part_until_it_fails() {
+    let terminal = Terminal::open("external-participant");
+    fs::create_dir_all(terminal.recordings()).expect("a folder");
+    let session = terminal.recordings() + "/program.toml";
+    let layout = concat!(env!("CARGO_MANIFEST_DIR"), "/layouts/sushi.toml");
+    let participant = format!("kind = \"external\"\ngaze = \"none\"\nexternal = '''{WANTS_RICE}'''\n");
+    let settings = format!("layout = {layout:?}\nseed = 1\n[robot]\narm = \"timed\"\n[participant]\n{participant}");
+    fs::write(&session, settings).expect("a session file");
+    terminal.run(&["operate", &session, "--out", &terminal.recordings()]);
+    terminal.see("READY");
+    terminal.wait("its name", || terminal.count("\"role\":\"participant\",\"name\":\"mine\"") > 0);
+    terminal.begin();
+    terminal.wait("its end", || terminal.count("exit code 4: tired") > 0);
+    assert_eq!(terminal.count("\"kind\":\"press\",\"agent\":\"human\""), 3);
+    let presses = || terminal.count("\"kind\":\"press\",\"agent\":\"robot\"");
+    let before = presses();
+    terminal.wait("the session goes on", || presses() > before);
+    terminal.quit();
+    terminal.verifies();
+}
+
 #[test]
 fn programs_that_crash_flood_and_hang_leave_the_session_running() {
     for (name, program, told) in [
@@ -42,6 +67,9 @@ fn programs_that_crash_flood_and_hang_leave_the_session_running() {
         terminal.operate("default.toml", &["--condition", "assistant", "--concept", program]);
         terminal.begin();
         terminal.wait(told, || terminal.count(told) > 0);
+        if name == "crash" {
+            terminal.see("external concept has ended: exit code 3: oh dear");
+        }
         let presses = || terminal.count("\"kind\":\"press\"");
         let before = presses();
         terminal.wait("the session goes on", || presses() > before + 3);

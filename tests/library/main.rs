@@ -36,4 +36,5 @@ mod study;
 mod support;
 #[cfg(unix)]
 mod terminal_input;
+mod ur;
 mod viewers;

@@ -36,7 +36,7 @@ pub(super) struct ArmArgs {
     #[arg(long, required = true)]
     serve: bool,
     /// Address at which it can be reached: of this machine alone by default, 0.0.0.0 for the network.
-    #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1")]
+    #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1", value_parser = address)]
     listen: IpAddr,
     /// Generation of controllers that it passes for.
     #[arg(long, value_enum, default_value = "e")]
@@ -61,6 +61,12 @@ impl From<SeriesArg> for Series {
             SeriesArg::Cb3 => Series::Cb3,
         }
     }
+}
+
+/// The ports are those of the manufacturer's controllers, so that clients find them.
+fn address(text: &str) -> Result<IpAddr, String> {
+    let right = "right would be an IP address of this computer without a port, such as 127.0.0.1";
+    text.parse().map_err(|_| right.to_string())
 }
 
 /// Number of typed lines that wait for the controller.

@@ -36,5 +36,4 @@ mod study;
 mod support;
 #[cfg(unix)]
 mod terminal_input;
-mod ur;
 mod viewers;

@@ -134,7 +134,7 @@ impl JointCommand {
         let next = match motion {
             None => self.braked(SAFETY_STOP_RAD_S2),
             Some(Motion::Stop { deceleration }) => {
-                let next = self.braked(deceleration);
+                let next = self.braked(if holds { deceleration.max(SAFETY_STOP_RAD_S2) } else { deceleration });
                 self.motion = (next != before).then_some(Motion::Stop { deceleration });
                 next
             }

@@ -437,7 +437,8 @@ fn lose_connection(random: &mut Stream) -> (f64, f64) {
         client.cycle(&mut controller);
     }
     client.rtde.leave(&mut controller);
-    let mut since_s = 0.0;
+    // The last heartbeat came before the last cycle.
+    let mut since_s = CYCLE_S;
     let mut brakes_s = None;
     while brakes_s.is_none() || controller.arm_at(1.0).target_speeds.iter().any(|speed| *speed != 0.0) {
         controller.cycle();

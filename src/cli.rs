@@ -1,6 +1,8 @@
 //! The command line of the program. A command is listed only when it works.
 
 mod args;
+#[cfg(feature = "ur")]
+mod arm_server;
 mod choices;
 mod command_hint;
 mod data;
@@ -101,6 +103,8 @@ pub fn main() -> ExitCode {
         CliCommand::List(args) => list::list(&args),
         CliCommand::Power(args) => pools::power(&args),
         CliCommand::Arms(args) => pools::arms(&args),
+        #[cfg(feature = "ur")]
+        CliCommand::Arm(args) => arm_server::serve(&args),
         CliCommand::Tournament(args) => tournaments::tournament(&args),
         CliCommand::Protocol(_) => tournaments::protocol(),
         CliCommand::Simulate(args) => simulation::simulate(&args),

@@ -34,14 +34,22 @@ impl SerialArm {
     /// All joint angles, between -pi and pi, at which the arm's tip has this pose in the frame of the base; the
     /// solutions are in a fixed order.
     pub fn inverse(&self, base_from_tip: &Isometry3<f64>) -> Vec<JointAngles> {
-        let stick = self.links.last().map_or_else(Isometry3::identity, |link| link.parent_from_joint);
         // The last frame of the Denavit-Hartenberg table is on the flange; the frame of the last turning link is in the
         // joint.
         let flange = Translation3::new(0.0, 0.0, D6);
-        let controller_from_base = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), -PI);
-        let target = controller_from_base * base_from_tip * stick.inverse() * flange;
+        let target = controller_from_base() * base_from_tip * self.stick().inverse() * flange;
         let found = closed_form(&target).into_iter().map(|joints| self.polished(base_from_tip, joints));
         found.filter(|(_, away)| *away < SOLVED).map(|(joints, _)| joints.map(wrapped)).collect()
+    }
+
+    /// The pose of the arm's tip in the frame of the flange, the last frame of the Denavit-Hartenberg table: what the
+    /// manufacturer's controller calls the offset of the tool centre point.
+    pub fn flange_from_tip(&self) -> Isometry3<f64> {
+        Translation3::new(0.0, 0.0, -D6) * self.stick()
+    }
+
+    fn stick(&self) -> Isometry3<f64> {
+        self.links.last().map_or_else(Isometry3::identity, |link| link.parent_from_joint)
     }
 
     /// Refines joint angles by Newton's method on the URDF's kinematics; returns the refined angles with the remaining
@@ -63,6 +71,12 @@ impl SerialArm {
     }
 }
 
+/// The turn from the frame of the arm's base to the base frame of the manufacturer's controller, in which poses of the
+/// tool centre point are given: half a turn about z.
+pub fn controller_from_base() -> UnitQuaternion<f64> {
+    UnitQuaternion::from_axis_angle(&Vector3::z_axis(), -PI)
+}
+
 /// The difference between two poses: metres, then a rotation vector in radians.
 pub fn twist(from: &Isometry3<f64>, to: &Isometry3<f64>) -> Vector6<f64> {
     let moves = to.translation.vector - from.translation.vector;
@@ -77,7 +91,7 @@ pub fn wrapped(angle: f64) -> f64 {
 
 /// The same pose of the arm, with every joint turned by whole turns so that the joint is nearest to the same joint in
 /// the other pose.
-pub(crate) fn turned_towards(joints: &JointAngles, other: &JointAngles) -> JointAngles {
+pub fn turned_towards(joints: &JointAngles, other: &JointAngles) -> JointAngles {
     std::array::from_fn::<f64, JOINTS, _>(|joint| other[joint] + wrapped(joints[joint] - other[joint]))
 }
 

@@ -59,7 +59,7 @@ impl SerialArm {
 
     /// The pose of the arm's tip in the frame of the base, and the geometric Jacobian of the tip: metres, then radians,
     /// per radian of each joint.
-    pub(crate) fn tip_and_jacobian(&self, joints: &JointAngles) -> (Isometry3<f64>, Matrix6<f64>) {
+    pub fn tip_and_jacobian(&self, joints: &JointAngles) -> (Isometry3<f64>, Matrix6<f64>) {
         let places = self.forward(joints);
         let tip = places.last().copied().unwrap_or_else(Isometry3::identity);
         let mut jacobian = Matrix6::zeros();
@@ -172,7 +172,7 @@ pub struct RevoluteJoint {
     /// Least and greatest angle of the joint, in radians.
     pub(crate) range_rad: [f64; 2],
     pub(crate) torque_nm: f64,
-    pub(crate) speed_rad_s: f64,
+    pub speed_rad_s: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -74,7 +74,7 @@ pub(crate) fn stick_down(at_m: [f64; 3]) -> Isometry3<f64> {
 }
 
 /// The arm's resting pose: the mean of the poses above the buttons.
-pub(super) fn resting_pose(buttons: &[&ButtonPoses]) -> JointAngles {
+pub fn resting_pose(buttons: &[&ButtonPoses]) -> JointAngles {
     let above: Vec<&JointAngles> = buttons.iter().map(|poses| &poses.above).collect();
     let mean = |joint: usize| above.iter().map(|pose| pose[joint]).sum::<f64>() / above.len() as f64;
     if above.is_empty() { BENT } else { std::array::from_fn(mean) }

@@ -5,6 +5,8 @@ use tomcom_core::communication::settings::ConceptSpec;
 
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 
+#[cfg(feature = "ur")]
+use super::arm_server::ArmArgs;
 use super::choices::{ArmArg, SimulatedCondition, concept};
 use super::data::{CodesArgs, ForgetArgs};
 use super::exports::ExportArgs;
@@ -62,6 +64,8 @@ pub(super) enum CliCommand {
     Export(ExportArgs),
     Forget(ForgetArgs),
     Doctor(DoctorArgs),
+    #[cfg(feature = "ur")]
+    Arm(ArmArgs),
     Completions(CompletionsArgs),
     Man(ManArgs),
 }

@@ -1,7 +1,7 @@
 //! What a session has around it: eye trackers ([`pupil`], [`gaze_json`], [`lsl`], [`gaze_file`]), the participant's display
 //! ([`sight`]: what the page may see; `display`: the server with its page), and Rerun (`scene`: a session as entities;
-//! `rerun`, `stream`, `rrd`: viewers and files), and programs that take the part of a concept or of the participant
-//! ([`external`]).
+//! `rerun`, `stream`, `rrd`: viewers and files), programs that take the part of a concept or of the participant
+//! ([`external`]), and a simulated controller of a UR5 (`ur`).
 //!
 //! The crate knows nothing of the console and of studies.
 
@@ -37,5 +37,7 @@ pub mod sight;
 #[cfg(feature = "rerun")]
 pub mod stream;
 pub mod stream_head;
+#[cfg(feature = "ur")]
+pub mod ur;
 #[cfg(feature = "rerun")]
 pub mod viewer;

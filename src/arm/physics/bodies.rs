@@ -59,6 +59,10 @@ impl PhysicalButton {
         PhysicalButton { body, collider, up_m: middle.z, closed: false }
     }
 
+    pub(crate) fn is_closed(&self) -> bool {
+        self.closed
+    }
+
     pub(crate) fn collider(&self) -> ColliderHandle {
         self.collider
     }

@@ -55,8 +55,10 @@ const FOLLOWS_RAD: f64 = 0.002;
 pub struct ContactForces {
     /// The greatest force between arm and human, in newtons.
     pub human_n: f64,
+    /// The force on the human when it was greatest, in newtons, in the frame of the arm's base.
+    pub onto_human_n: [f64; 3],
     /// The greatest force of the stick on the button, in newtons.
-    pub(crate) button_n: f64,
+    pub button_n: f64,
     /// Whether the button under the stick closed its contact.
     pub clicked: bool,
 }
@@ -208,7 +210,7 @@ impl PhysicsWorld {
     }
 
     /// Selects the button that the stick can touch; `None` while the stick is above all buttons.
-    pub(crate) fn aim_at(&mut self, button: Option<usize>) {
+    pub fn aim_at(&mut self, button: Option<usize>) {
         if let Some(before) = self.active.filter(|_| self.active != button) {
             self.buttons[before].set_active(&mut self.bodies, false);
         }
@@ -218,8 +220,13 @@ impl PhysicsWorld {
         self.active = button;
     }
 
-    pub(crate) fn aimed_at(&self) -> Option<usize> {
+    pub fn aimed_at(&self) -> Option<usize> {
         self.active
+    }
+
+    /// Whether the electrical contact of the button under the stick is closed.
+    pub fn is_pressed(&self) -> bool {
+        self.active.is_some_and(|active| self.buttons[active].is_closed())
     }
 
     /// Disables the motor of this joint to simulate a fault; with `None`, restores all motors.
@@ -288,7 +295,10 @@ impl PhysicsWorld {
                 &before,
                 command,
             );
-            felt.human_n = felt.human_n.max(self.touch(near));
+            let onto_human_n = self.touch(near);
+            if onto_human_n.norm() > felt.human_n {
+                (felt.human_n, felt.onto_human_n) = (onto_human_n.norm(), onto_human_n.into());
+            }
             self.step();
             if let Some(active) = self.active {
                 felt.clicked |= self.buttons[active].clicks(&self.bodies);
@@ -345,7 +355,7 @@ impl PhysicsWorld {
     }
 
     /// Applies the brakes: every joint stays where it is, whatever its motor does.
-    pub(crate) fn brake(&mut self) {
+    pub fn brake(&mut self) {
         self.fail(None);
         self.commanded = self.joints().0;
     }
@@ -360,9 +370,10 @@ impl PhysicsWorld {
         }
     }
 
-    /// Applies the contact force between arm and human at their deepest overlap. Returns the force in newtons.
-    fn touch(&mut self, near: bool) -> f64 {
-        let Some(hand) = self.hand else { return 0.0 };
+    /// Applies the contact force between arm and human at their deepest overlap. Returns the force on the
+    /// human in newtons.
+    fn touch(&mut self, near: bool) -> Vector3<f64> {
+        let Some(hand) = self.hand else { return Vector3::zeros() };
         let deepest = if near { self.deepest(&hand) } else { None };
         let (link, onto_human_n, at) = deepest.unwrap_or((0, Vector3::zeros(), Point3::origin()));
         hand.push(&mut self.bodies, onto_human_n);
@@ -375,7 +386,7 @@ impl PhysicsWorld {
         if let Some(body) = self.links.get(link).and_then(|body| self.bodies.get_mut(*body)) {
             body.add_force_at_point(single(-onto_human_n), single(at.coords), true);
         }
-        onto_human_n.norm()
+        onto_human_n
     }
 
     /// The link with the deepest overlap with the human, the force on the human in newtons, and the contact point.

@@ -42,6 +42,10 @@ fn wrong_files_and_arguments_are_named_with_what_would_be_right() {
     let told = complaint(&["operate", "--listen", "0.0.0.0:50022"]);
     assert!(told.contains("an address without a port, such as 0.0.0.0;") && told.contains("[display]"), "{told}");
     assert!(complaint(&["operate", "--listen", "here"]).contains("an IP address of this computer"));
+    assert!(complaint(&["arm"]).contains("--serve"));
+    assert!(complaint(&["arm", "--serve", "--listen", "here"]).contains("an IP address of this computer"));
+    assert!(complaint(&["arm", "--serve", "--program", "nowhere.script"]).contains("nowhere.script"));
+    assert!(complaint(&["arm", "--serve", "--program", "Cargo.toml"]).contains("Cargo.toml: line 1"));
 }
 
 /// An edit of a file that makes it wrong, or a wrong file, and the message that it has to give.

@@ -1,0 +1,38 @@
+//! Observers of the wizard's screen: what they see and remark.
+
+use std::net::{Ipv4Addr, SocketAddr};
+
+use crate::program::done;
+use crate::pseudo_terminal::Terminal;
+use crate::raw_page::RawObserver;
+
+#[test]
+fn an_observer_sees_the_wizards_screen_and_remarks_in_the_recording() {
+    let terminal = Terminal::open("observers");
+    terminal.operate("default.toml", &["--observe=127.0.0.1:0"]);
+    terminal.key("C-f");
+    let url = "0 of at most 20 watch this screen at http://127.0.0.1:";
+    terminal.see(url);
+    let screen = terminal.screen();
+    let port: String =
+        screen.split(url).nth(1).map(|rest| rest.chars().take_while(char::is_ascii_digit).collect()).expect("a port");
+    let address = SocketAddr::new(Ipv4Addr::LOCALHOST.into(), port.parse().expect("a number"));
+    let mut observer = RawObserver::open(address);
+    assert_eq!(observer.joins("page", "O1", None).as_deref(), Some("welcome"));
+    terminal.see("1 of at most 20 watch");
+    let text = |screen: String| screen.lines().map(str::trim_end).collect::<Vec<_>>().join("\n").trim_end().to_string();
+    let mut same = |what: &str| terminal.wait(what, || observer.screen() == text(terminal.screen()));
+    same("the list of checks on the observer's page");
+    terminal.key("Escape");
+    same("the console on the observer's page");
+    terminal.begin();
+    terminal.wait("the trial on the observer's page", || observer.screen().contains("RUNNING"));
+    assert_eq!(observer.remark(1, "looks at the pot"), None);
+    assert_eq!(terminal.count(r#""kind":"marker","note":"looks at the pot","observer":"O1""#), 1);
+    terminal.see("O1: looks at the pot");
+    terminal.quit();
+    assert!(observer.page.hear("ended").is_some());
+    terminal.verifies();
+    let recording = terminal.recording().display().to_string();
+    assert!(done(&["replay", &recording]).contains("remark of O1: looks at the pot"));
+}

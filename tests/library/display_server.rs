@@ -46,6 +46,19 @@ pub fn status(address: SocketAddr, path: &str, headers: &[String]) -> u32 {
     line.split(' ').nth(1).and_then(|status| status.parse().ok()).unwrap_or_default()
 }
 
+/// As a page of the participant.
+impl RawPage {
+    pub fn hello(&mut self, page: &str, code: Option<&str>) {
+        self.say(&json!({"kind": "hello", "page": page, "width": 800, "height": 600, "code": code}));
+    }
+
+    /// Says hello; whether it acts, none: it is not let in.
+    pub fn joins(&mut self, page: &str) -> Option<bool> {
+        self.hello(page, None);
+        self.hear("role")?["acts"].as_bool()
+    }
+}
+
 #[test]
 fn only_requests_to_this_machine_by_its_own_names_are_answered() {
     let (display, address) = serve(LOCAL);

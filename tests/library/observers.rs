@@ -1,7 +1,7 @@
 //! The observers' page: how frames become text, who is let in, what becomes of remarks, and that nobody is waited for.
 
 use std::net::{IpAddr, SocketAddr};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -26,6 +26,14 @@ fn frame(lines: &[String]) -> ScreenFrame {
     let columns = lines.iter().map(String::len).max().unwrap_or_default() as u16;
     let run = |line: &String| vec![CellRun { text: line.clone(), columns, ..CellRun::default() }];
     ScreenFrame { columns, is_light: false, lines: lines.iter().map(run).collect() }
+}
+
+/// Waits until the page shows a screen that begins like this.
+fn sees(observer: &mut RawObserver, text: &str) {
+    let began = Instant::now();
+    while !observer.screen().starts_with(text) {
+        assert!(began.elapsed() < Duration::from_secs(300), "{text} did not appear: {}", observer.screen());
+    }
 }
 
 /// Answers the next remark as a session does that takes all of them; the event that it becomes.
@@ -68,7 +76,7 @@ fn twenty_observers_see_every_change_and_the_next_one_is_refused_with_words() {
     for (number, observer) in observers.iter_mut().enumerate() {
         let joined = observer.joins(&format!("page {number}"), &format!("O{number}"), None);
         assert_eq!(joined.as_deref(), Some("welcome"), "{number}");
-        assert_eq!(observer.screen(), "one\ntwo");
+        sees(observer, "one\ntwo");
     }
     assert_eq!(server.count().watching(), 20);
     let mut late = RawObserver::open(address);
@@ -77,7 +85,7 @@ fn twenty_observers_see_every_change_and_the_next_one_is_refused_with_words() {
     assert_eq!((&refused["kind"], &refused["most"]), (&json!("full"), &json!(20)));
     server.show(frame(&["one".to_string(), "2".to_string()]));
     for observer in &mut observers {
-        assert_eq!(observer.screen(), "one\n2");
+        sees(observer, "one\n2");
     }
     // One goes, another one comes.
     observers.pop();
@@ -129,7 +137,7 @@ fn remarks_become_notes_of_their_observer_and_each_is_answered() {
         let note = format!("  looks at pot {number}  ");
         observer.page.say(&json!({"kind": "remark", "number": number, "note": note}));
     };
-    let mut answer = |observer: &mut RawObserver| {
+    let answer = |observer: &mut RawObserver| {
         let answer = observer.page.hear("remark").expect("an answer");
         (answer["number"].as_u64(), answer["refused"].as_str().map(str::to_string))
     };
@@ -169,7 +177,7 @@ fn an_observer_who_reads_nothing_delays_neither_the_console_nor_others() {
             other.screen();
         }
     }
-    assert!(other.screen().starts_with("199 0 "), "the newest frame");
+    sees(&mut other, "199 0 ");
 }
 
 #[test]

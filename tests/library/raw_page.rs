@@ -48,10 +48,6 @@ impl RawPage {
         let _ = self.0.write_all(&frame);
     }
 
-    pub fn hello(&mut self, page: &str, code: Option<&str>) {
-        self.say(&json!({"kind": "hello", "page": page, "width": 800, "height": 600, "code": code}));
-    }
-
     /// The next message of this kind; none, if the connection ends before.
     pub fn hear(&mut self, kind: &str) -> Option<Value> {
         self.hear_one_of(&[kind])
@@ -85,12 +81,6 @@ impl RawPage {
                 return Some(message);
             }
         }
-    }
-
-    /// Says hello; whether it acts, none: it is not let in.
-    pub fn joins(&mut self, page: &str) -> Option<bool> {
-        self.hello(page, None);
-        self.hear("role")?["acts"].as_bool()
     }
 }
 
@@ -135,12 +125,5 @@ impl RawObserver {
                 self.lines[line[0].as_u64().expect("an index") as usize] = text.trim_end().to_string();
             }
         }
-    }
-
-    /// Sends a remark; why it is in no recording, `None` if it is.
-    pub fn remark(&mut self, number: u64, note: &str) -> Option<String> {
-        self.page.say(&json!({"kind": "remark", "number": number, "note": note}));
-        let answer = self.page.hear("remark").expect("an answer");
-        answer["refused"].as_str().map(str::to_string)
     }
 }

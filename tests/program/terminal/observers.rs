@@ -2,9 +2,20 @@
 
 use std::net::{Ipv4Addr, SocketAddr};
 
+use serde_json::json;
+
 use crate::program::done;
 use crate::pseudo_terminal::Terminal;
 use crate::raw_page::RawObserver;
+
+impl RawObserver {
+    /// Sends a remark; why it is in no recording, `None` if it is.
+    fn remark(&mut self, number: u64, note: &str) -> Option<String> {
+        self.page.say(&json!({"kind": "remark", "number": number, "note": note}));
+        let answer = self.page.hear("remark").expect("an answer");
+        answer["refused"].as_str().map(str::to_string)
+    }
+}
 
 #[test]
 fn an_observer_sees_the_wizards_screen_and_remarks_in_the_recording() {

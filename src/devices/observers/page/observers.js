@@ -117,7 +117,10 @@
     } else if (message.kind === "full") {
       Talk.end();
       told.textContent = `${message.most} observers watch already, and no more are let in. Load the page again to try again.`;
-    } else if (message.kind === "ended") told.textContent = "The program has ended.";
+    } else if (message.kind === "ended") {
+      document.body.classList.add("lost");
+      told.textContent = "The program has ended.";
+    }
   }
 
   function lost() {

@@ -75,6 +75,10 @@ pub(super) struct OperateFlags {
     /// password, and change nothing. An address with a port, such as 127.0.0.1:9876.
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub(super) rerun_listen: Option<String>,
+    /// Let observers watch the wizard's screen, live and read-only, in a browser; their remarks become notes in the
+    /// recording. At another address than localhost the page asks for a pairing code of its own, which the console shows.
+    #[arg(long, value_name = "ADDRESS:PORT", num_args = 0..=1, require_equals = true, default_missing_value = "127.0.0.1:50023")]
+    pub(super) observe: Option<SocketAddr>,
     /// Folder in which the recording's folder is created. Not with --continue: a further part is created beside the
     /// recording.
     #[arg(long, default_value = "sessions")]
@@ -83,7 +87,10 @@ pub(super) struct OperateFlags {
 
 pub(super) fn operate(args: &OperateArgs) -> Result<(), Failure> {
     let done = match &args.recording {
-        Some(recording) => series::operate(SessionStart::Continued(recording.clone()), None)?,
+        Some(recording) => {
+            require_observers(args.flags.observe)?;
+            series::operate(SessionStart::Continued(recording.clone()), None, args.flags.observe)?
+        }
         None => new_session(args.session.as_deref(), &args.flags, None)?,
     };
     Ok(put(&series::describe(&done))?)
@@ -98,6 +105,7 @@ pub(super) fn new_session(
     if flags.rerun_listen.is_some() {
         Feature::Rerun.require()?;
     }
+    require_observers(flags.observe)?;
     session.map_or(Ok(()), carried::refuse)?;
     let name = session.unwrap_or(Path::new(DEFAULT_SESSION));
     let mut files = files::read_session(name)?;
@@ -123,13 +131,23 @@ pub(super) fn new_session(
         put_aside(&format!("The participant's code is {code}, from {}; --code CODE sets another.\n", name.display()));
     }
     match &files.spec.plan {
-        None => Ok(series::operate(SessionStart::New { files: Box::new(files), trial: 0, out }, compare)?),
+        None => {
+            Ok(series::operate(SessionStart::New { files: Box::new(files), trial: 0, out }, compare, flags.observe)?)
+        }
         Some(plan) => {
             let participant = options::participant_of_plan(plan, flags.code.as_deref());
             let participant = participant.map_err(wrong_setting)?;
-            Ok(series::operate_series(SeriesRequest { files, participant, out, compare })?)
+            Ok(series::operate_series(SeriesRequest { files, participant, out, compare, observe: flags.observe })?)
         }
     }
+}
+
+/// Refuses observers in a build without pages.
+fn require_observers(observe: Option<SocketAddr>) -> Result<(), Failure> {
+    if observe.is_some() {
+        Feature::Display.require()?;
+    }
+    Ok(())
 }
 
 /// Parses the address of a network interface of this computer; an address with a port is refused, since no port is

@@ -67,5 +67,5 @@ pub(super) fn tutorial(args: &TutorialArgs) -> Result<(), Failure> {
     };
     files.spec = spec;
     let start = SessionStart::New { files: Box::new(files), trial: 0, out: args.out.clone() };
-    Ok(put(&series::describe(&series::operate(start, None)?))?)
+    Ok(put(&series::describe(&series::operate(start, None, None)?))?)
 }

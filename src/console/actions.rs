@@ -67,7 +67,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
         KeyAction::Note(index) => {
             let note = session.spec.console.notes.get(index)?.clone();
             let words = format!("note recorded: {note}");
-            send(model, session, Event::Marker { note }, NoticeLevel::Done, &words)
+            send(model, session, Event::Marker { note, observer: None }, NoticeLevel::Done, &words)
         }
         KeyAction::Advance => advance(model, session),
         KeyAction::ResumeRobot => resume_robot(model, session),

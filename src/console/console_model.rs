@@ -14,7 +14,7 @@ use super::keys::KeyBindings;
 use super::lists::{ListCursor, Picker, ReasonFor};
 use super::mouse::SendConfirmation;
 use super::panels::Panel;
-use super::preflight::{GazePairing, ParticipantDisplayHealth};
+use super::preflight::{GazePairing, ObserverStatus, ParticipantDisplayHealth};
 use super::probe_keys::ProbeEntry;
 use super::text_input::TextInput;
 use super::view::theme::Theme;
@@ -152,6 +152,8 @@ pub struct ConsoleModel {
     /// What the session reads from its gaze file; `None` for other gaze sources.
     pub recorded_gaze: Option<RecordedGazeSummary>,
     pub display: Option<ParticipantDisplayHealth>,
+    /// State of the observers' page; `None` if there is none.
+    pub observers: Option<ObserverStatus>,
     /// In a plan: number of participants who have done everything, and of all of them.
     pub participants_done: Option<(usize, usize)>,
     /// In a plan: whether nothing of the participant's series is left after this recording.
@@ -221,6 +223,7 @@ impl ConsoleModel {
             gaze_pairing: None,
             recorded_gaze: None,
             display: None,
+            observers: None,
             participants_done: None,
             is_last_recording: false,
             rings: false,
@@ -471,6 +474,8 @@ pub struct Playback {
     /// Number of events of the recording up to the replay's position.
     pub event: usize,
     pub events: usize,
+    /// The landmark that a key went to last, in words, with the replay's position there; shown while the replay is there.
+    pub landmark: Option<(usize, String)>,
     pub follows: bool,
     pub cut: bool,
     /// Whether the recording is still being made, but the replay does not follow it.
@@ -491,11 +496,17 @@ impl Playback {
             trial_length: SessionTime::ZERO,
             event: 0,
             events: 0,
+            landmark: None,
             follows: false,
             cut: false,
             running: false,
             excluded: false,
         }
+    }
+
+    /// The landmark at which the replay stands, if a key went there.
+    pub fn stands_at(&self) -> Option<&str> {
+        self.landmark.as_ref().filter(|(event, _)| *event == self.event).map(|(_, words)| words.as_str())
     }
 
     /// The playback speed in words: "2x", "0.25x", "max".

@@ -302,7 +302,7 @@ pub(super) fn type_answer(
             KeyCode::Esc => None,
             KeyCode::Enter => {
                 let (note, said) = (format!("{question} {}", line.text()), "recorded as a note; enter ticks the step");
-                send(model, session, Event::Marker { note }, NoticeLevel::Done, said)
+                send(model, session, Event::Marker { note, observer: None }, NoticeLevel::Done, said)
             }
             _ => {
                 line.key(code);

@@ -59,7 +59,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: ManualAct
         ManualAction::NoteInWords if session.is_running() => {
             let note = String::new();
             let words = "time marked: its words are typed when the trial stands";
-            send(model, session, Event::Marker { note }, NoticeLevel::Done, words)
+            send(model, session, Event::Marker { note, observer: None }, NoticeLevel::Done, words)
         }
         ManualAction::NoteInWords if session.phase == TrialPhase::Closed => refuse(model, "the session is over"),
         ManualAction::NoteInWords => {
@@ -137,7 +137,13 @@ pub(super) fn write(
         KeyCode::Esc => None,
         KeyCode::Enter => match session.open_marks.as_slice() {
             [] if line.text().is_empty() => None,
-            [] => send(model, session, Event::Marker { note: line.text() }, NoticeLevel::Done, "the note is saved"),
+            [] => send(
+                model,
+                session,
+                Event::Marker { note: line.text(), observer: None },
+                NoticeLevel::Done,
+                "the note is saved",
+            ),
             [(marker, _), others @ ..] => {
                 let event = Event::MarkerWorded { marker: *marker, note: line.text() };
                 model.dialog = (!others.is_empty()).then(|| Dialog::Note(TextInput::default()));

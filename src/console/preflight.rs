@@ -33,6 +33,7 @@ pub fn checks(session: &Session, model: &ConsoleModel) -> Vec<PreflightCheck> {
     checks.extend(model.recorded_gaze.iter().flat_map(|found| recorded_gaze(&file, found)));
     checks.extend(model.gaze_pairing.as_ref().and_then(|pairing| pairing.check(session, model.now)));
     checks.extend(model.display.as_ref().map(|display| display.check(session.spec.participant.gaze)));
+    checks.extend(model.observers.as_ref().map(ObserverStatus::check));
     checks.extend(probes(session, model));
     checks.extend([robot(session, model), recording(model), space(model.free_bytes), keyboard(model)]);
     checks.extend(model.viewers.as_ref().map(viewers));
@@ -305,6 +306,28 @@ impl ParticipantDisplayHealth {
 
 pub fn is_wanted(session: &Session) -> bool {
     session.spec.participant.kind == ParticipantKind::Display
+}
+
+/// State of the observers' page of the wizard's screen.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ObserverStatus {
+    /// Address of the page: "http://127.0.0.1:50023".
+    pub url: String,
+    /// Pairing code that the page asks for; `None` if it can only be opened at this computer.
+    pub code: Option<String>,
+    pub watching: u64,
+    /// Largest number of observers.
+    pub most: u64,
+}
+
+impl ObserverStatus {
+    /// Entry of the preflight list with pairing code and address.
+    fn check(&self) -> PreflightCheck {
+        // The pairing code stands before the address, because small screens cut the line.
+        let code = self.code.as_ref().map_or(String::new(), |code| format!("pairing code {code}; "));
+        let ObserverStatus { url, watching, most, .. } = self;
+        PreflightCheck::ok("observers", format!("{code}{watching} of at most {most} watch this screen at {url}"))
+    }
 }
 
 /// Address and pairing code that a gaze sender at another computer needs.

@@ -1,5 +1,6 @@
 //! What a session has around it: eye trackers ([`pupil`], [`gaze_json`], [`lsl`], [`gaze_file`]), the participant's display
-//! ([`sight`]: what the page may see; `display`: the server with its page), and Rerun (`scene`: a session as entities;
+//! ([`sight`]: what the page may see; `display`: the server with its page), the observers' page of
+//! the wizard's screen (`observers`), Rerun (`scene`: a session as entities;
 //! `rerun`, `stream`, `rrd`: viewers and files), programs that take the part of a concept or of the participant
 //! ([`external`]), and a simulated controller of a UR5 (`ur`).
 //!
@@ -23,7 +24,11 @@ mod gaze_table;
 #[cfg(any(feature = "display", feature = "rerun"))]
 mod host_name;
 pub mod lsl;
+#[cfg(feature = "display")]
+pub mod observers;
 mod outer_address;
+#[cfg(feature = "display")]
+mod page_server;
 mod pairing;
 pub mod pupil;
 #[cfg(feature = "rerun")]

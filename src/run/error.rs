@@ -55,6 +55,15 @@ pub enum LiveError {
         /// Why the operating system could not open the server's address.
         reason: io::Error,
     },
+    /// The observers' page cannot be served.
+    #[error("the address {at} for observers cannot be opened: {reason}")]
+    #[diagnostic(help("give another port, or an address of this computer, as in --observe=127.0.0.1:50024"))]
+    Observers {
+        /// Address and port of the observers' server.
+        at: SocketAddr,
+        /// Why the operating system could not open the server's address.
+        reason: io::Error,
+    },
     /// The display tags do not fit on the display, so that the eye tracker could not find the display.
     #[error("the eye tracker has no surface to look for: found {}", .0.found)]
     #[diagnostic(help("{}; or set a surface of your own, with its corners, in [tracker]", .0.remedy))]

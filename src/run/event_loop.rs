@@ -9,7 +9,7 @@ use tokio::time::{Instant, Interval, MissedTickBehavior, interval, sleep_until};
 
 use super::assistant_link::AssistantNews;
 use super::error::TerminalError;
-use super::operator_station::{OperatorStation, PageInput};
+use super::operator_station::{OperatorStation, PageInput, Remark};
 use crate::console::lists::RecordingPicker;
 use crate::console::lists::StartPrompt;
 use crate::console::view::theme::Theme;
@@ -43,6 +43,8 @@ pub(super) enum LoopEvent {
     /// An input from the participant's page.
     Page(PageInput),
     Advice(AssistantNews),
+    /// An observer's remark. A shell that records nothing drops it, which tells the observer so.
+    Remark(Remark),
     PointerTick,
     /// Files that other programs or this one extend are due to be read or flushed.
     FileTick,
@@ -126,6 +128,7 @@ pub(super) async fn run<S: ConsoleShell>(
     station: &mut OperatorStation,
 ) -> Result<Option<S::Outcome>, S::Error> {
     let mut ticks = LoopTicks::start();
+    station.observers.refuse_waiting();
     for message in station.input.forget_keys() {
         shell.take(LoopEvent::Terminal(message))?;
     }
@@ -143,7 +146,7 @@ pub(super) async fn run<S: ConsoleShell>(
             }
             LoopEvent::FrameDue => {
                 ticks.frame = Some(Instant::now());
-                draw(shell, &mut station.screen)?;
+                draw(shell, station)?;
             }
             event => {
                 if let Some(outcome) = shell.take(event)? {
@@ -185,6 +188,7 @@ async fn next_event<S: ConsoleShell>(shell: &mut S, station: &mut OperatorStatio
         () = until(due.target) => LoopEvent::TargetDue,
         Some(input) = station.display.next() => LoopEvent::Page(input),
         Some(advice) = shell.advice() => LoopEvent::Advice(advice),
+        Some(remark) = station.observers.next() => LoopEvent::Remark(remark),
         _ = ticks.pointer.tick(), if with_pointer => LoopEvent::PointerTick,
         _ = ticks.files.tick() => LoopEvent::FileTick,
         _ = ticks.watch.tick() => LoopEvent::WatchTick,
@@ -202,17 +206,12 @@ async fn until(due: Option<Instant>) {
 }
 
 /// Draws the shell's content, unless the terminal is still busy with the last frame.
-fn draw<S: ConsoleShell>(shell: &mut S, screen: &mut TerminalScreen) -> Result<(), S::Error> {
-    if !shell.advance() || !screen.is_ready() {
+fn draw<S: ConsoleShell>(shell: &mut S, station: &mut OperatorStation) -> Result<(), S::Error> {
+    if !shell.advance() || !station.screen.is_ready() {
         return Ok(());
     }
     shell.prepare();
-    let drawn = match shell.view() {
-        ShellView::Console(session, model) => screen.draw(session, model),
-        ShellView::Question(question, notice, theme) => screen.ask(question, notice, theme),
-        ShellView::Recordings(picker, theme) => screen.list(picker, theme),
-    };
-    drawn.map_err(TerminalError)?;
+    station.draw(&shell.view())?;
     shell.drawn();
     Ok(())
 }

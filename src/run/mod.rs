@@ -34,6 +34,8 @@ mod rater_files;
 pub mod recording_list;
 pub mod resume;
 pub mod review_console;
+#[cfg(feature = "display")]
+pub mod screen_frame;
 pub mod seekable_replay;
 pub mod series;
 pub mod simulate;

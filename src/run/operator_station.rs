@@ -16,7 +16,7 @@ use super::error::{LiveError, TerminalError};
 use crate::console::ConsoleMessage;
 use crate::console::preflight::GazePairing;
 use crate::console::view::theme::Theme;
-use crate::run::event_loop::LoopEvent;
+use crate::run::event_loop::{LoopEvent, ShellView};
 use crate::run::terminal::{JobControl, TerminalScreen, asked_to_end, outlive_file_limits, theme};
 use crate::run::terminal_input::TerminalInput;
 use tomcom_core::kitchen::Kitchen;
@@ -41,12 +41,18 @@ mod station_display;
 #[cfg(not(feature = "display"))]
 #[path = "operator_station/without_display.rs"]
 mod station_display;
+#[cfg(feature = "display")]
+mod station_observers;
 
 mod lsl_output;
 
 use lsl_output::LslOutput;
 use station_display::StationDisplay;
 pub(super) use station_display::{PageInput, lost_since, take_consent_input};
+#[cfg(not(feature = "display"))]
+pub(super) use station_display::{Remark, StationObservers};
+#[cfg(feature = "display")]
+pub(super) use station_observers::{Remark, StationObservers};
 
 /// Terminal and devices that all recordings of a series share.
 pub(super) struct OperatorStation {
@@ -56,6 +62,7 @@ pub(super) struct OperatorStation {
     pub input: OperatorInput,
     pub tracker: GazeTracker,
     pub display: StationDisplay,
+    pub observers: StationObservers,
     pub lsl: LslOutput,
 }
 
@@ -97,17 +104,23 @@ impl GazeTracker {
 }
 
 impl OperatorStation {
-    /// Opens the devices that these settings need, and takes over the terminal.
+    /// Opens the devices that these settings need, and takes over the terminal. With `observe`, the wizard's screen can be
+    /// watched at this address.
     ///
     /// # Errors
-    /// There is no terminal, the gaze port cannot be opened, a gaze file cannot be read, the tags do not fit on the
-    /// display, or the library of the Lab Streaming Layer is missing.
-    pub async fn take(spec: &SessionSpec, kitchen: &Kitchen) -> Result<OperatorStation, LiveError> {
+    /// There is no terminal, a port cannot be opened, a gaze file cannot be read, the tags do not fit on the display, or
+    /// the library of the Lab Streaming Layer is missing.
+    pub async fn take(
+        spec: &SessionSpec,
+        kitchen: &Kitchen,
+        observe: Option<SocketAddr>,
+    ) -> Result<OperatorStation, LiveError> {
         outlive_file_limits().map_err(TerminalError)?;
         let lsl = LslOutput::open(spec)?;
         let tracker = GazeTracker::open(spec, kitchen, &lsl).await?;
         let display = StationDisplay::open(spec).await?;
-        Ok(OperatorStation { tracker, display, lsl, ..OperatorStation::without_devices(&spec.console)? })
+        let observers = StationObservers::open(observe).await?;
+        Ok(OperatorStation { tracker, display, observers, lsl, ..OperatorStation::without_devices(&spec.console)? })
     }
 
     /// Takes over the terminal, without devices.
@@ -121,7 +134,24 @@ impl OperatorStation {
         let jobs = JobControl::start().map_err(TerminalError)?;
         let input = OperatorInput { terminal, jobs, end: Box::pin(asked_to_end()) };
         let (tracker, display, lsl) = (GazeTracker::default(), StationDisplay::default(), LslOutput::default());
-        Ok(OperatorStation { screen, theme, input, tracker, display, lsl })
+        let observers = StationObservers::default();
+        Ok(OperatorStation { screen, theme, input, tracker, display, observers, lsl })
+    }
+
+    /// Draws this in the terminal, and shows it to the observers.
+    ///
+    /// # Errors
+    /// The terminal's size is unknown.
+    pub fn draw(&mut self, view: &ShellView<'_>) -> Result<(), TerminalError> {
+        let (drawn, theme) = match *view {
+            ShellView::Console(session, model) => (self.screen.draw(session, model), model.theme),
+            ShellView::Question(question, notice, theme) => (self.screen.ask(question, notice, theme), theme),
+            ShellView::Recordings(picker, theme) => (self.screen.list(picker, theme), theme),
+        };
+        if let Some(drawn) = drawn.map_err(TerminalError)? {
+            self.observers.show(&drawn, theme);
+        }
+        Ok(())
     }
 
     /// Sets the terminal up again after the program was stopped; with `stops`, gives the terminal back and stops the

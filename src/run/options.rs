@@ -1,6 +1,6 @@
 //! Options of `tomcom operate`: what to run, and settings that replace those of the session file.
 
-use std::net::IpAddr;
+use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -50,6 +50,8 @@ pub struct SeriesRequest {
     pub out: PathBuf,
     /// Comparison of wizard and assistants, if the console shows it.
     pub compare: Option<SenderComparisonSettings>,
+    /// Address at which observers can watch the wizard's screen.
+    pub observe: Option<SocketAddr>,
 }
 
 /// Session settings given on the command line; `None` keeps the session file's value.

@@ -13,7 +13,7 @@ use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::history::belief_track::{self, BeliefHistory, BeliefSnapshot};
 use tomcom_session::history::error_reasons::ExplainedError;
-use tomcom_session::history::wording;
+use tomcom_session::history::{event_words, wording};
 use tomcom_session::log::LogPlace;
 use tomcom_session::replay::RecordingReplay;
 use tomcom_session::replay::ReplayLandmark;
@@ -389,7 +389,9 @@ impl SeekableReplay {
                 _ => None,
             }),
             ReplayLandmark::Marker => entries().find_map(|entry| match entry {
-                TimelineEvent::Noted(Event::Marker { note }) => Some(note.clone()),
+                TimelineEvent::Noted(Event::Marker { note, observer }) => {
+                    Some(event_words::noted_words(note, observer.as_deref()))
+                }
                 _ => None,
             }),
             ReplayLandmark::FalseBelief => {

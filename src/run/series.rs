@@ -1,6 +1,7 @@
 //! The series of a participant's recordings: each recording has at most one trial, and the wizard makes one recording
 //! after another without leaving the console.
 
+use std::net::SocketAddr;
 use std::path::Path;
 
 use super::error::{LiveError, TerminalError};
@@ -31,17 +32,21 @@ pub struct SeriesOutcome {
 
 /// Runs one session at the console until the wizard leaves it, and repeats the session's trial if the wizard asks for
 /// that. With `compare`, the console shows the comparison of wizard and assistants, which unblinds the wizard;
-/// continued recordings have no comparison.
+/// continued recordings have no comparison. With `observe`, the wizard's screen can be watched at this address.
 ///
 /// # Errors
 /// There is no terminal, the session cannot be recorded, or the gaze input cannot be opened.
-pub fn operate(beginning: SessionStart, compare: Option<SenderComparisonSettings>) -> Result<SeriesOutcome, LiveError> {
+pub fn operate(
+    beginning: SessionStart,
+    compare: Option<SenderComparisonSettings>,
+    observe: Option<SocketAddr>,
+) -> Result<SeriesOutcome, LiveError> {
     let _lock = continued_lock(&beginning)?;
     in_runtime(async {
         // The session's start is checked before the terminal is taken over and a recording is created, so that a
         // session that cannot start leaves nothing behind.
         let mut begun = PreparedSession::new(beginning)?.comparing(compare.clone());
-        let mut station = OperatorStation::take(begun.spec(), begun.kitchen()).await?;
+        let mut station = OperatorStation::take(begun.spec(), begun.kitchen(), observe).await?;
         let mut done = Vec::new();
         loop {
             let mut end = live::run(begun, &mut station).await?;
@@ -128,7 +133,8 @@ impl Planned {
         if progress.next == NextRecording::Finished && progress.excluded().next().is_none() {
             return Ok(SeriesOutcome { done, remark: Some(stands(&progress)) });
         }
-        let mut station = OperatorStation::take(&self.series.files.spec, &self.series.files.kitchen.kitchen).await?;
+        let SeriesRequest { files, observe, .. } = &self.series;
+        let mut station = OperatorStation::take(&files.spec, &files.kitchen.kitchen, *observe).await?;
         if self.series.files.spec.participant.kind == ParticipantKind::Simulated
             && ask(&mut station, rehearsal(&progress, &self.series.out)).await? != Some(0)
         {

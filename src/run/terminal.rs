@@ -15,6 +15,7 @@ use crossterm::terminal::{
     disable_raw_mode, enable_raw_mode, size,
 };
 use crossterm::{cursor, queue};
+use ratatui::CompletedFrame;
 use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;
 
@@ -157,12 +158,12 @@ impl TerminalScreen {
         self.frames.is_lost()
     }
 
-    /// Composes a frame of the console, which the writing thread then writes. While the last frame is being written,
-    /// nothing is drawn.
+    /// Composes a frame of the console, which the writing thread then writes; returns it. While the last frame is being
+    /// written, nothing is drawn.
     ///
     /// # Errors
     /// The terminal's size is unknown.
-    pub fn draw(&mut self, session: &Session, model: &ConsoleModel) -> io::Result<()> {
+    pub fn draw(&mut self, session: &Session, model: &ConsoleModel) -> io::Result<Option<CompletedFrame<'_>>> {
         if self.is_ready() && model.rings {
             self.composed.write_all(&[BELL])?;
         }
@@ -173,7 +174,12 @@ impl TerminalScreen {
     ///
     /// # Errors
     /// The terminal's size is unknown.
-    pub fn ask(&mut self, question: &StartPrompt, notice: Option<&str>, theme: Theme) -> io::Result<()> {
+    pub fn ask(
+        &mut self,
+        question: &StartPrompt,
+        notice: Option<&str>,
+        theme: Theme,
+    ) -> io::Result<Option<CompletedFrame<'_>>> {
         self.compose(|frame| draw_question(question, notice, theme, frame))
     }
 
@@ -181,19 +187,19 @@ impl TerminalScreen {
     ///
     /// # Errors
     /// The terminal's size is unknown.
-    pub fn list(&mut self, picker: &RecordingPicker, theme: Theme) -> io::Result<()> {
+    pub fn list(&mut self, picker: &RecordingPicker, theme: Theme) -> io::Result<Option<CompletedFrame<'_>>> {
         self.compose(|frame| draw_recordings(picker, theme, frame))
     }
 
-    fn compose(&mut self, draw: impl FnOnce(&mut ratatui::Frame)) -> io::Result<()> {
+    fn compose(&mut self, draw: impl FnOnce(&mut ratatui::Frame)) -> io::Result<Option<CompletedFrame<'_>>> {
         if !self.is_ready() {
-            return Ok(());
+            return Ok(None);
         }
-        queue!(self.terminal.backend_mut(), BeginSynchronizedUpdate)?;
-        self.terminal.draw(draw)?;
-        queue!(self.terminal.backend_mut(), EndSynchronizedUpdate)?;
+        queue!(self.composed, BeginSynchronizedUpdate)?;
+        let drawn = self.terminal.draw(draw)?;
+        queue!(self.composed, EndSynchronizedUpdate)?;
         self.frames.show(self.composed.take());
-        Ok(())
+        Ok(Some(drawn))
     }
 }
 

@@ -5,7 +5,7 @@ use crate::event::{SignalEndReason, TrialEndReason};
 use crate::probes::{self, ProbeEvent};
 use crate::protocol::{self, ProtocolEvent};
 use crate::settings::{ArmKind, Condition, ParticipantKind};
-use crate::{Event, Session, TimelineEvent, TrialPhase, gaze_check, tracker};
+use crate::{Event, Session, TimelineEvent, TrialPhase, gaze_check, person_code, tracker};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::{self, Sender, Signal};
@@ -44,6 +44,10 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
         Event::Gaze(sample) => {
             let finite = sample.x.is_finite() && sample.y.is_finite() && sample.confidence.is_finite();
             refuse_if(!finite, "the gaze sample is not a number")
+        }
+        Event::Marker { note, observer: Some(observer) } => {
+            refuse_if(note.trim().is_empty(), "an observer's remark has words")?;
+            refuse_if(person_code::fault(observer).is_some(), "an observer has a code, as participants have")
         }
         Event::MarkerWorded { marker, .. } => {
             let is_open = session.open_marks.iter().any(|(mark, _)| mark == marker);

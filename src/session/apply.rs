@@ -147,7 +147,7 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
                 session.note_event(now, &stamped.event);
             }
         }
-        Event::Marker { note: text } => {
+        Event::Marker { note: text, .. } => {
             session.note_event(now, &stamped.event);
             if text.is_empty() {
                 session.open_marks.push((stamped.seq, now));
@@ -264,7 +264,7 @@ fn start(session: &mut Session, now: SessionTime, effects: &mut Vec<SessionEffec
 fn word_mark(session: &mut Session, marker: u64, note: &str) {
     let Some(index) = session.open_marks.iter().position(|(mark, _)| *mark == marker) else { return };
     let (_, at) = session.open_marks.remove(index);
-    let mark = |note: &str| TimelineEvent::Noted(Event::Marker { note: note.to_string() });
+    let mark = |note: &str| TimelineEvent::Noted(Event::Marker { note: note.to_string(), observer: None });
     let is_it = |entry: &&mut TimelineEntry| entry.time == at && entry.what == mark("");
     if let Some(entry) = session.timeline.iter_mut().find(is_it) {
         entry.what = mark(note);

@@ -172,9 +172,12 @@ pub enum Event {
     SignalEnded {
         reason: SignalEndReason,
     },
-    /// A time mark of the wizard; without words if they are to be typed later.
+    /// A time mark of the wizard, without words if they are to be typed later; or an observer's remark.
     Marker {
         note: String,
+        /// Code of the observer whose remark it is; without one it is the wizard's.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        observer: Option<String>,
     },
     /// The words of an earlier time mark; empty if it stays without.
     MarkerWorded {
@@ -237,6 +240,7 @@ impl Event {
     /// there can read them.
     pub fn private_fields(&self) -> &'static [&'static str] {
         match self {
+            Event::Marker { observer: Some(_), .. } => &["note", "observer"],
             Event::Marker { .. } | Event::MarkerWorded { .. } => &["note"],
             Event::TrialAborted { .. } | Event::TrialExcluded { .. } => &["reason"],
             Event::Preflight { .. } => &["checks"],
@@ -317,7 +321,7 @@ pub const MEANINGS: &[(&str, &str)] = &[
     ("focus_regained", "The wizard's terminal has the keyboard again"),
     ("human_waits", "The participant has not pressed for unusually long by its own intervals"),
     ("kitchen_corrected", "The wizard corrected what the program thought of a place"),
-    ("marker", "The wizard marked this moment"),
+    ("marker", "The wizard marked this moment, or an observer remarked something"),
     ("marker_worded", "The wizard's words about a moment marked before"),
     ("offer_closed", "An offer to the wizard closed"),
     ("offer_opened", "A recommendation was offered to the wizard"),

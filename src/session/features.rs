@@ -23,7 +23,7 @@ impl Feature {
                 "display",
                 cfg!(feature = "display"),
                 "the participant's display",
-                "the participant's display cannot be served",
+                "neither the participant's display nor the observers' page can be served",
             ),
             Feature::Mcap => ("mcap", cfg!(feature = "mcap"), "MCAP", "no recording is exported as MCAP"),
             Feature::Physics => (

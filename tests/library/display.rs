@@ -166,6 +166,7 @@ fn the_page_is_told_what_may_be_seen_and_nothing_else() {
                     let location = session.kitchen.location(session.kitchen.board).name.clone();
                     Some(Event::KitchenCorrected { location, content: content.name.clone() })
                 }
+                17 => Some(Event::Marker { note: "overlooked the pot".to_string(), observer: Some("O1".to_string()) }),
                 _ => None,
             };
             run(&mut engine, 50.0, wizard, |session| {

@@ -8,26 +8,25 @@ use tomcom_devices::display::DisplayServer;
 use tomcom_devices::sight::page_language::DisplayWords;
 use tomcom_session::wall_display::DisplaySpec;
 
+use crate::raw_page::{RawPage, connect, page};
 use crate::support::*;
 
-/// Nothing that is waited for takes longer; that it does not come is the failure.
-const PATIENCE: Duration = Duration::from_secs(300);
 pub const LOCAL: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
-const ALL: IpAddr = IpAddr::V4(Ipv4Addr::UNSPECIFIED);
+pub const ALL: IpAddr = IpAddr::V4(Ipv4Addr::UNSPECIFIED);
 
 /// Serves the display; it is there until this is dropped.
 pub fn serve(listen: IpAddr) -> (DisplayServer, SocketAddr) {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
     let words = DisplayWords::for_display(&DisplaySpec::default());
     let display = runtime.block_on(DisplayServer::open(listen, 0, &words)).expect("a free port");
-    let port = display.url().rsplit_once(':').and_then(|(_, port)| port.parse().ok()).expect("a port");
-    (display, SocketAddr::new(LOCAL, port))
+    let address = address_of(&display.url());
+    (display, address)
 }
 
-fn connect(address: SocketAddr) -> TcpStream {
-    let stream = TcpStream::connect(address).expect("connected");
-    stream.set_read_timeout(Some(PATIENCE)).expect("a time-out");
-    stream
+/// Where this machine reaches the page with this URL.
+pub fn address_of(url: &str) -> SocketAddr {
+    let port = url.rsplit_once(':').and_then(|(_, port)| port.parse().ok()).expect("a port");
+    SocketAddr::new(LOCAL, port)
 }
 
 /// Sends a request with these lines of headers; the status of the answer, 0: the connection was closed without one.
@@ -47,71 +46,10 @@ pub fn status(address: SocketAddr, path: &str, headers: &[String]) -> u32 {
     line.split(' ').nth(1).and_then(|status| status.parse().ok()).unwrap_or_default()
 }
 
-/// A page, as far as the server can see.
-pub struct RawPage(TcpStream);
-
+/// As a page of the participant.
 impl RawPage {
-    fn open(stream: TcpStream, host: SocketAddr) -> RawPage {
-        let mut page = RawPage(stream);
-        page.0.set_read_timeout(Some(PATIENCE)).expect("a time-out");
-        let request = format!(
-            "GET /talk HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n\
-             Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"
-        );
-        page.0.write_all(request.as_bytes()).expect("sent");
-        let mut head = Vec::new();
-        while !head.ends_with(b"\r\n\r\n") {
-            let mut byte = [0];
-            page.0.read_exact(&mut byte).expect("an answer");
-            head.push(byte[0]);
-        }
-        assert!(head.starts_with(b"HTTP/1.1 101"), "{}", String::from_utf8_lossy(&head));
-        page
-    }
-
-    /// A text frame as browsers send it (RFC 6455, section 5.2); with a mask of zeros.
-    fn say(&mut self, message: &Value) {
-        let text = message.to_string();
-        let mut frame = vec![0x81, 0x80 | 126];
-        frame.extend((text.len() as u16).to_be_bytes());
-        frame.extend([0; 4]);
-        frame.extend(text.as_bytes());
-        // Who was thrown out already is told so by what it hears.
-        let _ = self.0.write_all(&frame);
-    }
-
-    fn hello(&mut self, page: &str, code: Option<&str>) {
+    pub fn hello(&mut self, page: &str, code: Option<&str>) {
         self.say(&json!({"kind": "hello", "page": page, "width": 800, "height": 600, "code": code}));
-    }
-
-    /// The next message of this kind; none, if the connection ends before.
-    fn hear(&mut self, kind: &str) -> Option<Value> {
-        self.hear_one_of(&[kind])
-    }
-
-    fn hear_one_of(&mut self, kinds: &[&str]) -> Option<Value> {
-        loop {
-            let mut head = [0; 2];
-            self.0.read_exact(&mut head).ok()?;
-            let length = match head[1] {
-                126 => {
-                    let mut length = [0; 2];
-                    self.0.read_exact(&mut length).ok()?;
-                    usize::from(u16::from_be_bytes(length))
-                }
-                short => usize::from(short),
-            };
-            let mut payload = vec![0; length];
-            self.0.read_exact(&mut payload).ok()?;
-            // Pings are answered by browsers; this one is not there for so long.
-            if head[0] != 0x81 {
-                continue;
-            }
-            let message: Value = serde_json::from_slice(&payload).expect("JSON");
-            if kinds.iter().any(|kind| message["kind"] == *kind) {
-                return Some(message);
-            }
-        }
     }
 
     /// Says hello; whether it acts, none: it is not let in.
@@ -119,10 +57,6 @@ impl RawPage {
         self.hello(page, None);
         self.hear("role")?["acts"].as_bool()
     }
-}
-
-pub fn page(address: SocketAddr) -> RawPage {
-    RawPage::open(connect(address), address)
 }
 
 #[test]

@@ -48,7 +48,7 @@ fn the_console_shows_notes_devices_and_messages_written_out() {
     let events = [
         Event::TrialStarted,
         Event::Tracker(TrackerEvent::Connected { device: HOSTILE.to_string() }),
-        Event::Marker { note: HOSTILE.to_string() },
+        Event::Marker { note: HOSTILE.to_string(), observer: None },
     ];
     for (seq, event) in events.into_iter().enumerate() {
         let stamped = TimestampedEvent { seq: seq as u64, time: SessionTime(seq as u64), event };

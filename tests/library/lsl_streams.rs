@@ -119,7 +119,7 @@ fn what_people_typed_and_names_of_devices_are_not_sent() {
     let secret = "Anna".to_string();
     let answer = AnswerValue::Text(secret.clone());
     let events = [
-        (Event::Marker { note: secret.clone() }, "marker", "note"),
+        (Event::Marker { note: secret.clone(), observer: None }, "marker", "note"),
         (Event::TrialAborted { reason: secret.clone() }, "trial_aborted", "reason"),
         (Event::TrialExcluded { reason: secret.clone() }, "trial_excluded", "reason"),
         (Event::Tracker(TrackerEvent::Connected { device: secret.clone() }), "tracker/connected", "device"),

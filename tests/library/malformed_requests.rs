@@ -7,7 +7,8 @@ use std::panic;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
-use crate::display_server::{LOCAL, page, serve, status};
+use crate::display_server::{LOCAL, serve, status};
+use crate::raw_page::page;
 use crate::readers::mutate;
 use crate::support::*;
 use crate::viewers;

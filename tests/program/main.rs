@@ -16,6 +16,8 @@ mod plan;
 mod power;
 mod program;
 mod pseudo_terminal;
+#[path = "../library/raw_page.rs"]
+mod raw_page;
 mod stuck_terminal;
 mod study_parts;
 mod survival;

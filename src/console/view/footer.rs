@@ -9,7 +9,7 @@ use ratatui::style::Style;
 use super::paint::Painter;
 use super::regions::PanelAreas;
 use super::theme::TextRole;
-use crate::console::console_model::{ConsoleModel, Dialog, Notice, NoticeLevel, ReplayAction};
+use crate::console::console_model::{ConsoleModel, Dialog, Notice, NoticeLevel, Playback, ReplayAction};
 use crate::console::interventions::can_redo;
 use crate::console::key_action::{KeyAction, KeyBinding, KeyLayer, ManualAction, RaterAction, ViewAction};
 use crate::console::mouse::ClickAction;
@@ -132,8 +132,8 @@ fn hint<'a>(binding: &'a KeyBinding, session: &Session, model: &'a ConsoleModel)
     (!keys.is_empty()).then_some(Hint { keys, label, role })
 }
 
-/// Draws the line of messages: the question whether to send a clicked signal, or the latest notice, or else, as long as
-/// the robot arm stands after it stopped itself, the reason.
+/// Draws the line of messages: the question whether to send a clicked signal, or the latest notice, or else what stays:
+/// the landmark at which a replay stands, or the reason for which the robot arm stopped itself.
 pub fn message(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.message;
     if area.area() == 0 {
@@ -162,6 +162,9 @@ pub fn message(brush: &mut Painter, regions: &PanelAreas, session: &Session, mod
     if let Some(notice) = model.shown_notice() {
         let style = style_of(brush, notice);
         brush.text(area.x + 1, area.y, area.width - 1, &format!(" {} ", notice.text), style);
+    } else if let Some(landmark) = model.playback.as_ref().and_then(Playback::stands_at) {
+        let strong = brush.style(TextRole::Strong);
+        brush.text(area.x + 1, area.y, area.width - 1, &format!(" {landmark} "), strong);
     } else if session.robot.arm.mode.has_stopped_itself() && session.robot.stopped {
         let arm = &session.robot.arm;
         let why = event_words::arm_stopped(arm.mode, arm.stopped_by_n, None);

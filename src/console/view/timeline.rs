@@ -252,7 +252,7 @@ fn mark(
             Event::TrialExcluded { .. } => (5, signs.error.to_string(), TextRole::Signal),
             Event::TrialIncluded => (5, signs.served.to_string(), TextRole::Signal),
             Event::FocusLost => (5, "!".to_string(), TextRole::Alarm),
-            Event::Marker { note } => {
+            Event::Marker { note, .. } => {
                 let notes = &session.spec.console.notes;
                 let number = notes.iter().position(|known| known == note).map(|index| (index + 1).to_string());
                 (5, number.unwrap_or("*".to_string()), TextRole::Strong)

@@ -7,11 +7,10 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
+use crate::page_server::{PageMessage, text};
 use crate::sight::{DisplayContent, DisplayScene, RobotHandPose};
 use tomcom_session::questionnaire::AnswerValue;
 
-/// Longest message of a participant page, in bytes.
-pub(super) const MAX_BYTES: usize = 4096;
 /// Longest name or other text in a page's message, in bytes.
 const MAX_TEXT: usize = 64;
 /// Longest answer that a participant can type, in characters.
@@ -85,11 +84,6 @@ pub enum MessageFromPage {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub(super) enum MessageToPage {
-    /// Answer to a page's ping: the time in the ping, and the server's time, both in milliseconds.
-    Pong {
-        t: f64,
-        at: f64,
-    },
     Words {
         words: BTreeMap<String, String>,
     },
@@ -98,14 +92,26 @@ pub(super) enum MessageToPage {
         acts: bool,
         free: bool,
     },
-    /// Result of pairing: "code" asks for the pairing code; "wrong" says that the code was wrong; "locked" says that
-    /// the code was not checked, since too many wrong ones came before. The next code is checked after `wait_s`
-    /// seconds.
-    Pairing {
-        why: &'static str,
-        wait_s: u64,
-    },
-    Ended,
+}
+
+impl PageMessage for MessageFromPage {
+    fn read(text: &str) -> Option<MessageFromPage> {
+        read(text)
+    }
+
+    fn hello(&self) -> Option<(&str, Option<&str>)> {
+        match self {
+            MessageFromPage::Hello { page, code, .. } => Some((page, code.as_deref())),
+            _ => None,
+        }
+    }
+
+    fn ping(&self) -> Option<(f64, bool)> {
+        match self {
+            MessageFromPage::Ping { t, hidden, .. } => Some((*t, *hidden)),
+            _ => None,
+        }
+    }
 }
 
 /// Parses a message of the page; `None` if the message is malformed.
@@ -196,11 +202,6 @@ pub(super) fn robot(pose: &RobotHandPose) -> Arc<str> {
         robot: &'a RobotHandPose,
     }
     text(&Message { kind: "robot", robot: pose })
-}
-
-pub(super) fn text(message: &impl Serialize) -> Arc<str> {
-    // Messages have only string keys, so serialisation cannot fail.
-    Arc::from(serde_json::to_string(message).unwrap_or_default())
 }
 
 /// An input to the session from the participant page that takes part.

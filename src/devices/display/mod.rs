@@ -6,7 +6,6 @@
 
 mod connection;
 pub mod message;
-mod server;
 mod server_state;
 
 pub use message::{PageInput, ParticipantResponse};
@@ -15,17 +14,12 @@ pub use server_state::{ActivePage, DisplayCounts};
 use std::io;
 use std::net::{IpAddr, SocketAddr};
 use std::sync::Arc;
-use std::thread::JoinHandle;
-use std::time::Instant;
 
-use tokio::net::TcpListener;
 use tokio::sync::mpsc::{Receiver, channel};
 use tokio::sync::watch;
 
-use self::server::serve;
-use self::server_state::{DisplayStatus, PageFeed, ServerState};
-use crate::outer_address::reachable;
-use crate::pairing::pairing_code;
+use self::server_state::{DisplayStatus, LIMITS, PageFeed, ServerState};
+use crate::page_server::{PageDoor, PageServer};
 use crate::sight::page_language::DisplayWords;
 use crate::sight::{DisplayContent, DisplayScene, RobotHandPose};
 
@@ -35,11 +29,9 @@ const WAITING: usize = 1024;
 /// Server of the participant's display: its address and its inputs. Dropping the value tells the pages that the program
 /// ends, and stops the server.
 pub struct DisplayServer {
-    address: SocketAddr,
-    code: Option<String>,
+    server: PageServer,
     inputs: Receiver<PageInput>,
     screen: DisplayHandle,
-    thread: Option<JoinHandle<io::Result<()>>>,
 }
 
 /// Handle with which the program sends content to all pages of the display and reads their counters.
@@ -49,7 +41,7 @@ pub struct DisplayHandle {
     sight: watch::Sender<Arc<str>>,
     robot: watch::Sender<Arc<str>>,
     status: Arc<DisplayStatus>,
-    began: Instant,
+    door: Arc<PageDoor>,
 }
 
 impl DisplayServer {
@@ -59,29 +51,17 @@ impl DisplayServer {
     /// # Errors
     /// The program cannot listen at the address.
     pub async fn open(listen: IpAddr, port: u16, words: &DisplayWords) -> io::Result<DisplayServer> {
-        let listener = TcpListener::bind((listen, port)).await?;
-        let address = listener.local_addr()?;
-        let listener = listener.into_std()?;
-        let code = (!listen.is_loopback()).then(pairing_code);
         let (send, inputs) = channel(WAITING);
         let status = Arc::new(DisplayStatus::default());
-        let screen = DisplayHandle {
-            scene: watch::Sender::new(Arc::from("")),
-            sight: watch::Sender::new(Arc::from("")),
-            robot: watch::Sender::new(Arc::from("")),
-            status: status.clone(),
-            began: Instant::now(),
-        };
-        let told = PageFeed {
-            scene: screen.scene.subscribe(),
-            sight: screen.sight.subscribe(),
-            robot: screen.robot.subscribe(),
-        };
-        let hub = ServerState::new(code.clone(), words.of_page(), send, (told, status), screen.began);
-        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
-        let thread = std::thread::Builder::new().name("display".to_string());
-        let thread = Some(thread.spawn(move || runtime.block_on(serve(listener, hub)))?);
-        Ok(DisplayServer { address, code, inputs, screen, thread })
+        let feed = || watch::Sender::new(Arc::<str>::from(""));
+        let (scene, sight, robot) = (feed(), feed(), feed());
+        let told = PageFeed { scene: scene.subscribe(), sight: sight.subscribe(), robot: robot.subscribe() };
+        let (shared, words) = (status.clone(), words.of_page());
+        let room =
+            |door| ServerState { door, words, inputs: send, told, status: shared, acting: watch::Sender::new(None) };
+        let server = PageServer::open(SocketAddr::new(listen, port), LIMITS, "display", room).await?;
+        let screen = DisplayHandle { scene, sight, robot, status, door: server.door.clone() };
+        Ok(DisplayServer { server, inputs, screen })
     }
 
     pub async fn next(&mut self) -> Option<PageInput> {
@@ -91,12 +71,12 @@ impl DisplayServer {
     /// URL of the participant's page, such as "http://127.0.0.1:50022"; for a wildcard address, with this machine's
     /// address in the network.
     pub fn url(&self) -> String {
-        format!("http://{}", reachable(self.address))
+        self.server.url()
     }
 
     /// Pairing code that the participant's page asks for; `None` if no code is needed.
     pub fn code(&self) -> Option<&str> {
-        self.code.as_deref()
+        self.server.code()
     }
 
     pub fn screen(&self) -> DisplayHandle {
@@ -107,10 +87,7 @@ impl DisplayServer {
 impl Drop for DisplayServer {
     fn drop(&mut self) {
         self.inputs.close();
-        // The server takes half a second at most to tell its pages; without waiting, the process would end before that.
-        if let Some(thread) = self.thread.take() {
-            let _ = thread.join();
-        }
+        self.server.end();
     }
 }
 
@@ -122,7 +99,7 @@ impl DisplayHandle {
 
     /// Sends to the pages what the display shows now, with the time in seconds that a probe or the trial still has.
     pub fn show(&self, sight: &DisplayContent, left_s: Option<f64>) {
-        let at_ms = self.began.elapsed().as_secs_f64() * 1000.0;
+        let at_ms = self.door.now_ms();
         self.sight.send_replace(message::sight(sight, left_s.map(|left_s| (at_ms, left_s))));
     }
 
@@ -131,6 +108,6 @@ impl DisplayHandle {
     }
 
     pub fn counts(&self) -> DisplayCounts {
-        self.status.counts()
+        self.status.counts(&self.door.counts)
     }
 }

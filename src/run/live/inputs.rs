@@ -6,7 +6,7 @@ use crate::console::console_model::NoticeLevel;
 use crate::console::{ConsoleCommand, ConsoleMessage, update};
 use crate::run::assistant_link::AssistantNews;
 use crate::run::leaving::LeavingReason;
-use crate::run::operator_station::{PageInput, lost_since};
+use crate::run::operator_station::{PageInput, Remark, lost_since};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_devices::external::LocalMinds;
@@ -48,6 +48,17 @@ impl Live {
         if let Some(reason) = outcome.refused.filter(|_| !is_silent) {
             self.model.say(NoticeLevel::Refused, reason);
         }
+    }
+
+    /// Records an observer's remark, and tells the observer whether it is in the recording.
+    pub(super) fn take_remark(&mut self, remark: Remark) {
+        let outcome = self.engine.input(self.clock.now(), remark.event());
+        self.record(&outcome.events);
+        let lost = self.failed.as_ref().map(|_| "the recording cannot be written".to_string());
+        remark.answer(match outcome.refused.or(lost) {
+            Some(reason) => Err(reason),
+            None => Ok(()),
+        });
     }
 
     /// Takes what came back from whoever advises.

@@ -10,6 +10,7 @@ use super::viewing::StreamedSession;
 use crate::console::console_model::NoticeLevel;
 use crate::console::console_model::RecordingStatus;
 use crate::console::console_model::SenderComparisonView;
+use crate::console::preflight::ObserverStatus;
 use crate::console::{ConsoleModel, KeyBindings};
 use crate::run::assistant_link::{AssistantLink, AssistantNews, next_news};
 use crate::run::clock::SessionClock;
@@ -54,6 +55,8 @@ pub(super) struct Live {
     pub(super) comparison: Option<ComparisonThreadHandle>,
     /// The participant's display, if there is one.
     pub(super) display: Option<ParticipantDisplay>,
+    /// What tells the state of the observers' page, if there is one.
+    pub(super) observers: Option<Box<dyn Fn() -> ObserverStatus>>,
     /// Session time at which the page that takes part was last heard of, while it is lost.
     pub(super) page_lost: Option<SessionTime>,
     pub(super) model: ConsoleModel,
@@ -140,6 +143,7 @@ impl ConsoleShell for Live {
             LoopEvent::TargetDue => self.show_target(),
             LoopEvent::Page(input) => self.take_page_input(input),
             LoopEvent::Advice(news) => self.take_assistant_news(news),
+            LoopEvent::Remark(remark) => self.take_remark(remark),
             LoopEvent::PointerTick => self.sample_pointer(),
             LoopEvent::FileTick => self.flush(),
             LoopEvent::WatchTick => self.watch(),
@@ -202,6 +206,7 @@ impl Live {
             participant,
             comparison,
             display,
+            observers: station.observers.status(),
             page_lost: None,
             model,
             header,
@@ -284,7 +289,7 @@ impl Live {
     fn tell_next(&mut self, station: &mut OperatorStation) -> Result<(), LiveError> {
         if !self.model.is_last_recording {
             self.model.say(NoticeLevel::Done, "the next recording is being prepared: wait for its first screen");
-            station.screen.draw(self.engine.session(), &self.model).map_err(TerminalError)?;
+            station.draw(&self.view())?;
         }
         Ok(())
     }

@@ -74,11 +74,12 @@ impl Live {
         }
     }
 
-    /// Updates the state of the participant's display that the console shows to the wizard.
+    /// Updates the state of the participant's display, and of the observers' page, that the console shows to the wizard.
     pub(super) fn examine_display(&mut self) {
         if let (Some(display), Some(health)) = (&self.display, &mut self.model.display) {
             display.examine(health);
         }
+        self.model.observers = self.observers.as_ref().map(|status| status());
     }
 }
 

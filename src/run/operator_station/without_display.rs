@@ -1,9 +1,16 @@
-//! Stand-in for the participant's display at the operator's station, in a build without the feature `display`.
+//! Stand-ins for the participant's display and the observers' page at the operator's station, in a build without the feature
+//! `display`.
 
+use std::net::SocketAddr;
+
+use ratatui::CompletedFrame;
+
+use crate::console::preflight::ObserverStatus;
+use crate::console::view::theme::Theme;
 use crate::run::error::LiveError;
 use tomcom_core::base::time::SessionTime;
 use tomcom_devices::sight::ConsentHold;
-use tomcom_session::{Session, SessionSpec};
+use tomcom_session::{Event, Session, SessionSpec};
 
 /// Input of a participant's page, which never occurs in this build; so the type has no values.
 pub(in crate::run) enum PageInput {}
@@ -44,4 +51,49 @@ pub(in crate::run) fn take_consent_input(
     _: SessionTime,
 ) -> Option<&'static str> {
     match *input {}
+}
+
+/// A remark of an observer, which never occurs in this build; so the type has no values.
+pub(in crate::run) enum Remark {}
+
+impl Remark {
+    /// Never called, since this build has no observers.
+    pub fn event(&self) -> Event {
+        match *self {}
+    }
+
+    /// Never called, since this build has no observers.
+    pub fn answer(self, _: Result<(), String>) {
+        match self {}
+    }
+}
+
+/// Stand-in for the observers' page, which this build lacks.
+#[derive(Default)]
+pub(in crate::run) struct StationObservers {}
+
+impl StationObservers {
+    /// Opens no page; commands that ask for one were refused before.
+    ///
+    /// # Errors
+    /// None.
+    pub async fn open(_: Option<SocketAddr>) -> Result<StationObservers, LiveError> {
+        Ok(StationObservers {})
+    }
+
+    /// Does nothing, since this build has no observers.
+    pub fn show(&self, _: &CompletedFrame<'_>, _: Theme) {}
+
+    /// Never returns, since this build has no observers.
+    pub async fn next(&mut self) -> Option<Remark> {
+        std::future::pending().await
+    }
+
+    /// Does nothing, since this build has no observers.
+    pub fn refuse_waiting(&mut self) {}
+
+    /// No state, since this build has no observers.
+    pub fn status(&self) -> Option<Box<dyn Fn() -> ObserverStatus>> {
+        None
+    }
 }

@@ -77,11 +77,10 @@ impl Review {
         }
     }
 
-    /// Says which landmark of this kind the replay stands at, if it stands at one, and what it is.
+    /// Shows which landmark of this kind the replay stands at, if it stands at one, and what it is.
     fn name_landmark(&mut self, what: ReplayLandmark) {
-        if let Some(said) = self.film.named(what) {
-            self.model.say(NoticeLevel::Done, said);
-        }
+        let (position, said) = (self.film.position, self.film.named(what));
+        self.playback(|playback| playback.landmark = said.map(|said| (position, said)));
     }
 
     /// Goes to a session time, and plays on if it played.

@@ -102,8 +102,9 @@ pub fn line(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<St
         Event::SignalEnded { reason: SignalEndReason::Elapsed } => "signal ends".to_string(),
         Event::SignalEnded { reason: SignalEndReason::TakenBack } => "signal taken back".to_string(),
         Event::SignalEnded { reason: SignalEndReason::Outdated } => "signal out of date".to_string(),
-        Event::Marker { note } if note.is_empty() => "marker".to_string(),
-        Event::Marker { note } => format!("marker: {note}"),
+        Event::Marker { note, .. } if note.is_empty() => "marker".to_string(),
+        Event::Marker { note, observer: None } => format!("marker: {note}"),
+        Event::Marker { note, observer: Some(observer) } => format!("remark of {observer}: {note}"),
         Event::MarkerWorded { marker, note } => format!("words of marker {marker}: {note}"),
         Event::Probe(event) => probe(event),
         Event::Protocol(event) => protocol(event),
@@ -240,12 +241,20 @@ pub fn happening(kitchen: &Kitchen, what: &TimelineEvent) -> (&'static str, Stri
     }
 }
 
+/// A note in words, an observer's with the observer's code.
+pub fn noted_words(note: &str, observer: Option<&str>) -> String {
+    match (note, observer) {
+        ("", _) => "time mark".to_string(),
+        (note, None) => note.to_string(),
+        (note, Some(observer)) => format!("{observer}: {note}"),
+    }
+}
+
 fn noted(event: &Event) -> (&'static str, String) {
     match event {
         Event::SignalShown { by, signal, .. } => (wording::sender(*by), wording::signal(signal)),
         Event::SignalEnded { .. } => ("wizard", "took the signal back".to_string()),
-        Event::Marker { note } if note.is_empty() => ("note", "time mark".to_string()),
-        Event::Marker { note } => ("note", note.clone()),
+        Event::Marker { note, observer } => ("note", noted_words(note, observer.as_deref())),
         Event::RobotStopped => ("wizard", "stopped the robot".to_string()),
         Event::RobotSafety { mode, force_n, joint } => ("robot", arm_stopped(*mode, *force_n, *joint)),
         Event::RobotTouched { force_n } => ("robot", format!("contact with a person, {force_n:.0} N")),

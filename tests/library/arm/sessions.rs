@@ -33,7 +33,11 @@ fn until(engine: &mut SessionEngine, at_most_s: f64, is_it: impl Fn(&Event) -> b
     }
     // The time goes by all the same.
     seen.extend(
-        engine.input(end, Event::Marker { note: String::new() }).events.into_iter().map(|stamped| stamped.event),
+        engine
+            .input(end, Event::Marker { note: String::new(), observer: None })
+            .events
+            .into_iter()
+            .map(|stamped| stamped.event),
     );
     seen
 }

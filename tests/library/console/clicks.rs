@@ -155,7 +155,10 @@ fn hints_buttons_of_the_participant_and_beliefs_are_clicked() {
     assert!(matches!(&stage.model.dialog, Some(Dialog::Palette(cursor)) if cursor.filter == "notes"));
     stage.key(KeyCode::Down);
     stage.wait(1.0);
-    assert_eq!(input(stage.key(KeyCode::Enter)), Some(Event::Marker { note: "overlooked a change".to_string() }));
+    assert_eq!(
+        input(stage.key(KeyCode::Enter)),
+        Some(Event::Marker { note: "overlooked a change".to_string(), observer: None })
+    );
     stage.click("90 %");
     assert!(stage.model.belief_focus.is_some());
 }

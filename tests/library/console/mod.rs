@@ -117,7 +117,7 @@ impl Stage {
         stage.at(13.5, Event::SignalEnded { reason: SignalEndReason::TakenBack });
         stage.estimate(&[("recipe of tuna nigiri", "salmon nigiri", 0.61), ("assembly_board", "nori", 0.98)], false);
         stage.press(15.0, Agent::Human, "trash");
-        stage.at(15.5, Event::Marker { note: "slip".to_string() });
+        stage.at(15.5, Event::Marker { note: "slip".to_string(), observer: None });
         stage.press(16.1, Agent::Robot, "cutting_board");
         stage.press(17.0, Agent::Human, "cooking_pot");
         stage.press(19.2, Agent::Human, "assembly_board");

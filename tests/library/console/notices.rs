@@ -82,7 +82,10 @@ fn the_notes_are_those_of_the_session() {
     stage.session.spec.console.notes = vec!["asked for help".to_string()];
     stage.model.keys =
         KeyBindings::live(&stage.session.kitchen, &stage.session.spec, &KeyFileBindings::default()).expect("free keys");
-    assert_eq!(input(stage.key(KeyCode::Char('1'))), Some(Event::Marker { note: "asked for help".to_string() }));
+    assert_eq!(
+        input(stage.key(KeyCode::Char('1'))),
+        Some(Event::Marker { note: "asked for help".to_string(), observer: None })
+    );
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Char('2')), None);
     stage.key(KeyCode::Char('?'));
@@ -109,7 +112,7 @@ fn notes_in_words_are_written_while_no_trial_runs_and_only_there_the_space_bar_t
     for size in [(80, 24), (200, 60)] {
         stage.shows(size, &["no trial is running: space types a space", " Asks for  help ", "enter save the text"]);
     }
-    let note = Event::Marker { note: "Asks for  help".to_string() };
+    let note = Event::Marker { note: "Asks for  help".to_string(), observer: None };
     assert_eq!(input(stage.key(KeyCode::Enter)), Some(note));
     assert_eq!(input(stage.key(KeyCode::Char(' '))), Some(Event::RobotStopped));
     stage.wait(1.0);
@@ -123,7 +126,7 @@ fn a_time_mark_is_set_at_once_and_gets_its_words_when_the_trial_stands() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     for seconds in [23.0, 24.0] {
         let mark = input(stage.key(KeyCode::Char('0'))).expect("a mark");
-        assert_eq!(mark, Event::Marker { note: String::new() });
+        assert_eq!(mark, Event::Marker { note: String::new(), observer: None });
         assert_eq!(stage.model.dialog, None, "the space bar goes on to stop the robot");
         stage.at(seconds, mark);
         stage.wait(1.0);
@@ -149,7 +152,7 @@ fn a_time_mark_is_set_at_once_and_gets_its_words_when_the_trial_stands() {
         .timeline
         .iter()
         .filter_map(|entry| match &entry.what {
-            TimelineEvent::Noted(Event::Marker { note }) if entry.time.as_secs_f64() > 22.0 => {
+            TimelineEvent::Noted(Event::Marker { note, observer: None }) if entry.time.as_secs_f64() > 22.0 => {
                 Some((entry.time.as_secs_f64(), note.as_str()))
             }
             _ => None,
@@ -170,7 +173,7 @@ fn notes_in_words_are_written_after_the_trial_too_until_the_session_is_closed() 
     }
     stage.key(KeyCode::Char('0'));
     type_in(&mut stage, "was tired");
-    let note = Event::Marker { note: "was tired".to_string() };
+    let note = Event::Marker { note: "was tired".to_string(), observer: None };
     assert_eq!(input(stage.key(KeyCode::Enter)), Some(note.clone()));
     stage.at(25.0, note.clone());
     assert!(stage.session.timeline.iter().any(|entry| entry.what == TimelineEvent::Noted(note.clone())));
@@ -190,7 +193,7 @@ fn the_space_bar_stops_the_robot_where_a_trial_goes_on_while_a_note_is_typed() {
     stage.at(25.0, Event::TrialResumed);
     stage.shows((80, 24), &["space STOP ROBOT"]);
     assert_eq!(input(stage.key(KeyCode::Char(' '))), Some(Event::RobotStopped));
-    assert_eq!(input(stage.key(KeyCode::Enter)), Some(Event::Marker { note: "late".to_string() }));
+    assert_eq!(input(stage.key(KeyCode::Enter)), Some(Event::Marker { note: "late".to_string(), observer: None }));
 }
 
 #[test]

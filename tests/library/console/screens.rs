@@ -244,7 +244,7 @@ fn notes_of_one_moment_stand_beside_each_other_in_the_timeline() {
     let before = Stage::sushi(ParticipantKind::Simulated);
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     for note in ["wrong recipe", "overlooked a change", "slip"] {
-        stage.at(22.6, Event::Marker { note: note.to_string() });
+        stage.at(22.6, Event::Marker { note: note.to_string(), observer: None });
     }
     for size in &SIZES[1..] {
         let size = *size;
@@ -508,4 +508,20 @@ fn colours_keep_their_contrast_on_dark_and_light_terminals() {
             assert_ne!(colour(other), colour(FalseBelief), "one colour is that of false beliefs alone");
         }
     }
+}
+
+#[test]
+fn a_replay_says_at_which_landmark_it_stands_for_as_long_as_it_stands_there() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    let landmark = Some((10, "error 1 of 17: take salmon".to_string()));
+    stage.replays(Playback { length: at(40.0), event: 10, events: 90, landmark, ..Playback::new("S001".to_string()) });
+    stage.model.clock = at(3600.0);
+    stage.shows_everywhere(&["error 1 of 17: take salmon"]);
+    stage.model.say(NoticeLevel::Refused, "the recording has no later error");
+    stage.shows_everywhere(&["the recording has no later error"]);
+    stage.hides(SIZES[0], &["error 1 of 17"]);
+    stage.model.clock = at(7200.0);
+    stage.shows_everywhere(&["error 1 of 17: take salmon"]);
+    stage.model.playback.as_mut().expect("a replay").event = 11;
+    SIZES.iter().for_each(|size| stage.hides(*size, &["error 1 of 17"]));
 }

@@ -118,7 +118,7 @@ fn a_question_of_the_debriefing_is_answered_in_words_as_a_note() {
     stage.shows_everywhere(&["Did you recognise the participant's mistakes in time?"]);
     let note = "Did you recognise the participant's mistakes in time? Note what you missed. no".to_string();
     let answered = stage.key(KeyCode::Enter);
-    assert_eq!(answered, Some(ConsoleCommand::Input(Event::Marker { note })));
+    assert_eq!(answered, Some(ConsoleCommand::Input(Event::Marker { note, observer: None })));
     assert!(stage.notice().contains("enter ticks the step"), "{}", stage.notice());
 }
 

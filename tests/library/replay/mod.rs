@@ -47,7 +47,7 @@ fn anything(kitchen: &Kitchen, random: &mut impl RngExt) -> Event {
         1 | 2 => Event::TrialResumed,
         3 => Event::RobotStopped,
         4 | 5 => Event::RobotResumed,
-        6 => Event::Marker { note: "note 1".to_string() },
+        6 => Event::Marker { note: "note 1".to_string(), observer: None },
         7 => Event::SignalEnded { reason: SignalEndReason::TakenBack },
         8 => {
             let button = &kitchen.buttons[Agent::Robot.index()];

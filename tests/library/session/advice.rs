@@ -50,7 +50,7 @@ fn pot(seconds: f64, net: f64) -> (f64, Event) {
 }
 
 fn marker(seconds: f64) -> (f64, Event) {
-    (seconds, Event::Marker { note: String::new() })
+    (seconds, Event::Marker { note: String::new(), observer: None })
 }
 
 fn sent(seconds: f64, signal: Signal) -> (f64, Event) {
@@ -360,7 +360,7 @@ fn a_proposal_ends_by_another_press_by_a_change_that_spoils_it_and_after_its_tim
     assert_eq!(ends(&with_advice(&mut engine, 2.0, full)), [SignalEndReason::Outdated]);
 
     let (mut engine, _) = after_an_error(|_| ());
-    let marker = Event::Marker { note: "later".to_string() };
+    let marker = Event::Marker { note: "later".to_string(), observer: None };
     assert_eq!(ends(&with_advice(&mut engine, 6.0, marker)), [SignalEndReason::Elapsed]);
 }
 
@@ -397,7 +397,7 @@ fn pressed(engine: &mut SessionEngine, intervals_s: &[f64]) -> (Vec<(&'static st
 }
 
 fn later(seconds: f64) -> (f64, Event) {
-    (seconds, Event::Marker { note: "later".to_string() })
+    (seconds, Event::Marker { note: "later".to_string(), observer: None })
 }
 
 fn waits(kinds: &[(&str, f64)]) -> Vec<f64> {
@@ -451,7 +451,7 @@ fn a_press_ends_the_silence_and_a_pause_is_none() {
 fn the_silence_that_is_recorded_is_the_time_since_the_last_press() {
     let mut engine = engine(|_| ());
     let (_, last_s) = pressed(&mut engine, &[1.0]);
-    let events = engine.input(at(last_s + 13.0), Event::Marker { note: String::new() }).events;
+    let events = engine.input(at(last_s + 13.0), Event::Marker { note: String::new(), observer: None }).events;
     let silences = events.iter().filter_map(|stamped| match stamped.event {
         Event::HumanWaits { silent_ns } => Some(silent_ns),
         _ => None,

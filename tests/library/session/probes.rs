@@ -43,7 +43,7 @@ pub fn probes_of(events: &[TimestampedEvent]) -> Vec<(SessionTime, ProbeEvent)> 
 
 /// Lets the session go on until this time.
 fn until(engine: &mut SessionEngine, seconds: f64) -> Vec<TimestampedEvent> {
-    engine.input(at(seconds), Event::Marker { note: "now".to_string() }).events
+    engine.input(at(seconds), Event::Marker { note: "now".to_string(), observer: None }).events
 }
 
 #[test]

@@ -38,7 +38,7 @@ fn driven(button: &str) -> Event {
 
 /// Lets the session run on to this time; what happened until then, but for the silence of the human.
 fn run_on(engine: &mut SessionEngine, seconds: f64) -> Vec<(&'static str, f64)> {
-    let mut kinds = check(engine, &[(seconds, Event::Marker { note: String::new() })]);
+    let mut kinds = check(engine, &[(seconds, Event::Marker { note: String::new(), observer: None })]);
     kinds.retain(|(kind, _)| *kind != "human_waits");
     kinds
 }
@@ -184,7 +184,7 @@ fn a_robot_whose_human_is_passive_serves_alone_within_40_s() {
         assert_eq!(reason, IdleReason::HumanTurn);
         let pot = engine.session().kitchen.button_named(Agent::Human, "cooking_pot").expect("a button");
         assert!(waits_for.contains(&pot), "the human could take the shrimp: {waits_for:?}");
-        let events = engine.input(at(40.0), Event::Marker { note: String::new() }).events;
+        let events = engine.input(at(40.0), Event::Marker { note: String::new(), observer: None }).events;
         let served = *engine.session().served.first().expect("it serves an order");
         assert_eq!(engine.session().kitchen.dish(served.dish).name, "shrimp nigiri");
         let done = done(&events);

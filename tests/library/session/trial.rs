@@ -23,7 +23,7 @@ fn a_trial_ends_after_its_time_and_pauses_do_not_count() {
     let mut engine = engine(|spec| spec.trial.seconds = 10.0);
     check(&mut engine, &[(1.0, Event::TrialStarted), (4.0, Event::TrialPaused), (9.0, Event::TrialResumed)]);
     assert_eq!(engine.session().trial_clock(at(10.0)), at(4.0));
-    let kinds = check(&mut engine, &[(30.0, Event::Marker { note: "later".to_string() })]);
+    let kinds = check(&mut engine, &[(30.0, Event::Marker { note: "later".to_string(), observer: None })]);
     assert!(kinds.contains(&("trial_ended", 16.0)), "{kinds:?}");
     assert_eq!(engine.session().phase, TrialPhase::Over(TrialEndReason::Time));
     assert_eq!(engine.next_due(), None);
@@ -58,7 +58,7 @@ fn a_pause_postpones_the_arm_the_orders_and_the_signal() {
         if pause_s > 0.0 {
             inputs.extend([(0.3, Event::TrialPaused), (0.3 + pause_s, Event::TrialResumed)]);
         }
-        inputs.push((10.0 + pause_s, Event::Marker { note: String::new() }));
+        inputs.push((10.0 + pause_s, Event::Marker { note: String::new(), observer: None }));
         inputs
     };
     let run = |pause_s: f64| check(&mut engine(|_| ()), &inputs(pause_s));

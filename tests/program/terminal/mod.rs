@@ -3,6 +3,7 @@
 mod by_hand;
 mod external;
 mod leaving;
+mod observers;
 mod watching;
 mod wizard;
 

@@ -1,34 +1,19 @@
 "use strict";
-// Connection of the page to the program: received messages go to the stage, inputs of the participant go to the
-// program. A lost connection is opened again automatically, and then transmits the whole state.
+// What the participant's page and the program say to each other: received messages go to the stage, inputs of the
+// participant go to the program.
 
 (() => {
-  const RESIZED_MS = 400, IDLE_MS = 3000, PING_MS = 500, FIRST_PINGS = 5, FIRST_PING_MS = 60, SILENCE_MS = 1200, LOOK_MS = 250, OPENING_MS = 3000, AGAIN_MS = 500, POINTER_MS = 16;
+  const RESIZED_MS = 400, IDLE_MS = 3000, PING_MS = 500, FIRST_PINGS = 5, FIRST_PING_MS = 60, POINTER_MS = 16;
+  const { page, isOpen, say } = Talk;
   const asksFor = new URLSearchParams(location.search);
   // A page that only watches, for a second screen, says nothing of itself.
   const watches = asksFor.has("watch");
-  let socket = null, code = asksFor.get("code"), number = 0, acts = null, isFree = false;
-  let trips = [], took = null, cue = null, pointed = null, pinger = 0;
-  // When the unanswered ping was sent; 0: no ping is unanswered. The timers of a hidden page are slow, so the time
-  // since the last message does not show whether the connection works.
-  let asked = 0;
+  let code = asksFor.get("code"), number = 0, acts = null, isFree = false;
+  let trips = [], took = null, cue = null, pointed = null;
   // Times of presses whose effect is not on the screen yet.
   const waiting = [];
   // The seconds that a probe or the trial still has.
   let left = () => 0;
-
-  /** Name of the page, which it keeps when it is loaded again, so that it takes part again in its old role. */
-  const page = (() => {
-    let name = sessionStorage.getItem("page");
-    if (!name) {
-      name = [...crypto.getRandomValues(new Uint8Array(12))].map((byte) => byte.toString(16).padStart(2, "0")).join("");
-      sessionStorage.setItem("page", name);
-    }
-    return name;
-  })();
-
-  const isOpen = () => socket && socket.readyState === WebSocket.OPEN;
-  const say = (message) => isOpen() && socket.send(JSON.stringify(message));
 
   /**
    * Converts a time of this page to the server's clock, with the offset measured by the ping that had the shortest
@@ -39,24 +24,15 @@
     return at + best.offset;
   };
 
-  function ping() {
-    const first = trips.length < FIRST_PINGS;
-    asked = asked || performance.now();
-    say({ kind: "ping", t: performance.now(), took, hidden: document.visibilityState === "hidden" });
-    clearTimeout(pinger);
-    pinger = setTimeout(ping, first ? FIRST_PING_MS : PING_MS);
-  }
-
-  function hear({ data }) {
-    const now = performance.now(), message = JSON.parse(data);
-    asked = 0;
+  function hear(message) {
+    const now = performance.now();
     if (message.kind === "pong") {
       took = now - message.t;
       Readiness.note(took);
       trips = [...trips.slice(-19), { took, offset: message.at - (message.t + now) / 2 }];
     } else if (message.kind === "pairing") {
       code = null;
-      Stage.askCode(message.why, message.wait_s, (typed) => { code = typed; hello(); });
+      Stage.askCode(message.why, message.wait_s, (typed) => { code = typed; hello(); Talk.ping(); });
     } else if (message.kind === "words") {
       Stage.greet(message.words);
     } else if (message.kind === "role") {
@@ -113,32 +89,19 @@
     trips = [];
     number = 0;
     waiting.length = 0;
-    ping();
   }
 
-  function connect() {
-    const made = new WebSocket(`ws://${location.host}/talk`);
-    socket = made;
-    asked = performance.now();
-    made.onopen = () => { Stage.mark({ lost: false, ended: false }); hello(); };
-    made.onmessage = hear;
-    made.onclose = () => made === socket && lose();
+  function opened() {
+    Stage.mark({ lost: false, ended: false });
+    hello();
   }
 
-  /** The connection does not work: that is told at once, without waiting for it to be closed, and another one is opened. */
-  function lose() {
-    const old = socket;
-    socket = null;
+  function lost() {
     // Nobody knows now whether the time goes on: it stands until the program tells it anew.
     const stood = left();
     left = () => stood;
-    asked = 0;
     waiting.length = 0;
-    clearTimeout(pinger);
-    if (old) old.onopen = old.onmessage = old.onclose = null;
-    if (old) old.close();
     Stage.mark({ lost: true });
-    setTimeout(connect, AGAIN_MS);
   }
 
   function press(button, at) {
@@ -185,23 +148,17 @@
     idle = setTimeout(rest, IDLE_MS);
   });
   rest();
-  // A connection that no longer answers is lost. Where the page itself stood still, the answer may be there already.
-  let looked = 0;
-  setInterval(() => {
-    const now = performance.now(), stood = now - looked > 2 * LOOK_MS;
-    looked = now;
-    if (socket && asked && !stood && now - asked > (isOpen() ? SILENCE_MS : OPENING_MS)) lose();
-  }, LOOK_MS);
   // Keeps the screen on, if the browser supports that.
   const stayOn = () => navigator.wakeLock && navigator.wakeLock.request("screen").catch(() => {});
   document.addEventListener("visibilitychange", () => {
     if (document.visibilityState === "visible") stayOn();
     // Tells the server whether the page is hidden, since it waits longer for hidden pages.
-    if (isOpen() && trips.length) ping();
+    if (isOpen() && trips.length) Talk.ping();
   });
   stayOn();
   Stage.mark({ watches });
   Sound.begin(say);
   Hands.begin(press, (message) => (isOpen() ? say(message) : Stage.refuse()), point);
-  connect();
+  const ping = () => ({ more: { took }, next_ms: trips.length < FIRST_PINGS ? FIRST_PING_MS : PING_MS });
+  Talk.begin({ opened, hear, lost, ping });
 })();

@@ -17,7 +17,7 @@ use tomcom_core::measures::raters::{ErrorCauseCode, ErrorCauseKind};
 use tomcom_session::error_list::ListedError;
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::history::belief_track::BeliefSnapshot;
-use tomcom_session::history::wording;
+use tomcom_session::history::{event_words, wording};
 use tomcom_session::log::video_file::AttachedFilm;
 use tomcom_session::{Event, Session, TimestampedEvent};
 
@@ -95,10 +95,12 @@ impl AnnotationCollector {
                 self.signals.push((now, None, format!("{}: {}", wording::sender(*by), wording::signal(signal))));
             }
             Event::SignalEnded { .. } => self.end_signal(now),
-            Event::Marker { note } => self.notes.push((stamped.seq, now, note.clone())),
+            Event::Marker { note, observer } => {
+                self.notes.push((stamped.seq, now, event_words::noted_words(note, observer.as_deref())));
+            }
             Event::MarkerWorded { marker, note } => {
                 if let Some((.., words)) = self.notes.iter_mut().find(|(seq, ..)| seq == marker) {
-                    words.clone_from(note);
+                    *words = event_words::noted_words(note, None);
                 }
             }
             _ => {}
@@ -174,10 +176,7 @@ impl AnnotationCollector {
                     tiers.push(spells(name, all));
                 }
             }
-            let notes = self
-                .notes
-                .into_iter()
-                .map(|(_, time, words)| (time, if words.is_empty() { "time mark".to_string() } else { words }));
+            let notes = self.notes.into_iter().map(|(_, time, words)| (time, words));
             tiers.push(moments("notes".to_string(), notes.collect()));
             for (rater, codes) in codes {
                 let coded = codes.0.iter().filter_map(|(press, code)| Some((time_of(*press)?, code_words(code))));

@@ -25,6 +25,7 @@ const AGENTS: Levels = &[
     ("robot", "The robot that cooks with the participant"),
     ("wizard", "The person at the console, or the script in its place"),
     ("assistant", "The communication concept that acts by itself"),
+    ("observer", "Somebody who watched the wizard's screen"),
 ];
 const SIGNALS: Levels = &[
     ("show_recipe", "The recipe of the dish that the order at the place wants"),
@@ -62,7 +63,7 @@ pub(super) fn event_columns(with_words: bool) -> Vec<TableColumn<EventRow>> {
             will touch the button, when the display drew it, when a fixation began" => row.cells.at.map(seconds);
         "force", "N", "Contact force" => row.cells.force_n;
         "item", "", "Item of a questionnaire, step of the tutorial, phase, aspect of a belief, size of the \
-            display, probe and question as in 2.1" => &row.cells.item;
+            display, code of an observer, probe and question as in 2.1" => &row.cells.item;
         "answer", "", "Answer to the item: a number, or the ids of the chosen options; of a probe the value, or \
             unsure" => &row.cells.answer;
         "value", "", "The number that the event tells: of robot_safety the faulty joint, clock_jumped \
@@ -137,7 +138,13 @@ impl EventCells {
             Event::Preflight { overridden, .. } => self.what = if *overridden { "overridden" } else { "" }.to_string(),
             Event::TrialEnded { reason } => self.reason = reason.name().to_string(),
             Event::TrialAborted { reason } | Event::TrialExcluded { reason } => self.words = reason.clone(),
-            Event::Marker { note } | Event::MarkerWorded { note, .. } => self.words = note.clone(),
+            Event::Marker { note, observer } => {
+                self.words = note.clone();
+                if let Some(observer) = observer {
+                    (self.agent, self.item) = ("observer".to_string(), observer.clone());
+                }
+            }
+            Event::MarkerWorded { note, .. } => self.words = note.clone(),
             Event::Press { agent, button, at_ns } => {
                 (self.agent, self.button, self.at) = (name(agent), button.clone(), *at_ns);
             }

@@ -1,4 +1,4 @@
-//! Web server of the participant's display: the files of the page, and the WebSocket.
+//! Web server of a room's page: its files, and the WebSocket.
 
 use std::convert::Infallible;
 use std::io;
@@ -20,10 +20,7 @@ use hyper_util::service::TowerToHyperService;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::time::{sleep, timeout};
 
-use super::connection::serve_page;
-use super::message::MAX_BYTES;
-use super::server_state::{ServerState, count};
-use crate::connection_table::ConnectionHandle;
+use super::{MAX_BYTES, PageDoor, PageRoom, PageSocket, Place, count};
 use crate::host_name::is_local;
 
 /// Content security policy of the page: it loads nothing from other servers and must not be framed.
@@ -40,38 +37,18 @@ const AGAIN: Duration = Duration::from_millis(100);
 const GOODBYE: Duration = Duration::from_millis(500);
 const TOLD: Duration = Duration::from_millis(5);
 
-/// Response to a request for the participant's page under another host name.
-const REFUSED: &str = "Refused: open the participant's page at the address that the console shows.";
-
-/// Files of the participant's page: path, content type, and content of each file.
-const FILES: [(&str, &str, &str); 16] = [
-    ("/", "text/html; charset=utf-8", include_str!("page/index.html")),
-    ("/display.css", "text/css; charset=utf-8", include_str!("page/display.css")),
-    ("/display.js", "text/javascript; charset=utf-8", include_str!("page/display.js")),
-    ("/sound.js", "text/javascript; charset=utf-8", include_str!("page/sound.js")),
-    ("/readiness.js", "text/javascript; charset=utf-8", include_str!("page/readiness.js")),
-    ("/reason.js", "text/javascript; charset=utf-8", include_str!("page/reason.js")),
-    ("/status.js", "text/javascript; charset=utf-8", include_str!("page/status.js")),
-    ("/robot.js", "text/javascript; charset=utf-8", include_str!("page/robot.js")),
-    ("/room.js", "text/javascript; charset=utf-8", include_str!("page/room.js")),
-    ("/upright.js", "text/javascript; charset=utf-8", include_str!("page/upright.js")),
-    ("/stage.js", "text/javascript; charset=utf-8", include_str!("page/stage.js")),
-    ("/tutorial.js", "text/javascript; charset=utf-8", include_str!("page/tutorial.js")),
-    ("/probe.js", "text/javascript; charset=utf-8", include_str!("page/probe.js")),
-    ("/questions.js", "text/javascript; charset=utf-8", include_str!("page/questions.js")),
-    ("/hands.js", "text/javascript; charset=utf-8", include_str!("page/hands.js")),
-    ("/art.js", "text/javascript; charset=utf-8", include_str!("page/art.js")),
-];
+/// Response to a request for a page under another host name.
+const REFUSED: &str = "Refused: open the page at the address that the console shows.";
 
 /// The router of HTTP requests, as a service of the `hyper` crate.
 type Answers = TowerToHyperService<Router>;
 
-/// Serves the participant's display until the receiver of page inputs is dropped.
-pub(super) async fn serve(listener: std::net::TcpListener, hub: ServerState) -> io::Result<()> {
+/// Serves a room until the receiver of its inputs is dropped.
+pub(super) async fn serve<R: PageRoom>(listener: std::net::TcpListener, room: R) -> io::Result<()> {
     let listener = TcpListener::from_std(listener)?;
-    let hub = Arc::new(hub);
-    let mut router = Router::new().route("/talk", get(connect));
-    for (path, kind, text) in FILES {
+    let room = Arc::new(room);
+    let mut router = Router::new().route("/talk", get(connect::<R>));
+    for &(path, kind, text) in R::FILES {
         let headers = [
             (header::CONTENT_TYPE, kind),
             (header::CACHE_CONTROL, "no-store"),
@@ -80,15 +57,14 @@ pub(super) async fn serve(listener: std::net::TcpListener, hub: ServerState) -> 
         ];
         router = router.route(path, get(move || async move { (headers, text) }));
     }
-    let answers = TowerToHyperService::new(router.with_state(hub.clone()));
-    let (inputs, status) = (hub.inputs.clone(), hub.status.clone());
+    let answers = TowerToHyperService::new(router.with_state(room.clone()));
     tokio::select! {
-        () = take_connections(listener, hub, answers) => {}
-        () = inputs.closed() => {}
+        () = take_connections(listener, room.clone(), answers) => {}
+        () = room.inputs().closed() => {}
     }
     // Each connection tells its page that the program ends; further messages of pages are not waited for.
     let all_told = async {
-        while status.pages.load(Ordering::Relaxed) > 0 {
+        while room.door().counts.pages.load(Ordering::Relaxed) > 0 {
             sleep(TOLD).await;
         }
     };
@@ -97,21 +73,21 @@ pub(super) async fn serve(listener: std::net::TcpListener, hub: ServerState) -> 
 }
 
 /// Accepts network connections until the server stops.
-async fn take_connections(listener: TcpListener, hub: Arc<ServerState>, answers: Answers) {
+async fn take_connections<R: PageRoom>(listener: TcpListener, room: Arc<R>, answers: Answers) {
     loop {
         let Ok((stream, from)) = listener.accept().await else {
             // The process may have run out of file descriptors: the pause prevents a loop that never sleeps.
             sleep(AGAIN).await;
             continue;
         };
-        let arrival = hub.connections.arrive(from.ip(), Instant::now());
+        let arrival = room.door().connections.arrive(from.ip(), Instant::now());
         if arrival.as_ref().is_none_or(|arrival| arrival.made_room) {
-            count(&hub.status.refused);
+            count(&room.door().counts.refused);
         }
         let Some(arrival) = arrival else { continue };
         // Small messages such as presses are sent at once (no Nagle delay).
         let _ = stream.set_nodelay(true);
-        tokio::spawn(answer(stream, Arc::new(arrival.place), hub.clone(), answers.clone()));
+        tokio::spawn(answer(stream, Arc::new(arrival.place), room.clone(), answers.clone()));
         // The new connection's first request is read before further connections can replace the new one.
         tokio::task::yield_now().await;
     }
@@ -119,14 +95,14 @@ async fn take_connections(listener: TcpListener, hub: Arc<ServerState>, answers:
 
 /// Answers one HTTP request. A WebSocket that the request opens continues in a task of its own; connections without a
 /// WebSocket are closed afterwards.
-async fn answer(stream: TcpStream, place: Arc<ConnectionHandle>, hub: Arc<ServerState>, answers: Answers) {
+async fn answer<R: PageRoom>(stream: TcpStream, place: Place, room: Arc<R>, answers: Answers) {
     let shared = place.clone();
     let service = service_fn(move |mut request: Request<Incoming>| {
         shared.heard(Instant::now());
-        let is_own = has_own_host(request.headers(), request.uri(), hub.has_code());
+        let is_own = has_own_host(request.headers(), request.uri(), room.door().has_code());
         request.extensions_mut().insert(shared.clone());
-        let (answers, hub) = (answers.clone(), hub.clone());
-        async move { if is_own { answers.call(request).await } else { Ok::<Response, Infallible>(refuse(&hub)) } }
+        let (answers, room) = (answers.clone(), room.clone());
+        async move { if is_own { answers.call(request).await } else { Ok::<Response, Infallible>(refuse(room.door())) } }
     });
     let mut http = http1::Builder::new();
     http.timer(TokioTimer::new()).header_read_timeout(HEADER).keep_alive(false).max_buf_size(MAX_REQUEST);
@@ -139,28 +115,31 @@ async fn answer(stream: TcpStream, place: Arc<ConnectionHandle>, hub: Arc<Server
 }
 
 /// Opens the WebSocket of a page of this server; pages of other websites in the browser are refused.
-async fn connect(
-    State(hub): State<Arc<ServerState>>,
-    Extension(place): Extension<Arc<ConnectionHandle>>,
+async fn connect<R: PageRoom>(
+    State(room): State<Arc<R>>,
+    Extension(place): Extension<Place>,
     headers: HeaderMap,
     upgrade: WebSocketUpgrade,
 ) -> Response {
     if !has_own_origin(&headers) {
-        return refuse(&hub);
+        return refuse(room.door());
     }
     let upgrade = upgrade.max_message_size(MAX_BYTES).max_frame_size(MAX_BYTES);
-    upgrade.on_upgrade(move |socket| serve_page(socket, hub, place))
+    upgrade.on_upgrade(move |socket| async move {
+        let page = PageSocket::new(socket, room.door().clone(), place);
+        room.serve(page).await;
+    })
 }
 
-fn refuse(hub: &ServerState) -> Response {
-    count(&hub.status.refused);
+fn refuse(door: &PageDoor) -> Response {
+    count(&door.counts.refused);
     (StatusCode::FORBIDDEN, REFUSED).into_response()
 }
 
 /// Whether an HTTP request is addressed to this server. Without a pairing code, the host must be a loopback address or
 /// `localhost`: any other name that resolves to this machine, such as `127.evil.example`, belongs to a foreign website
 /// (DNS rebinding). For a server open to the network, the pairing code keeps foreign websites out.
-pub(super) fn has_own_host(headers: &HeaderMap, target: &Uri, has_code: bool) -> bool {
+fn has_own_host(headers: &HeaderMap, target: &Uri, has_code: bool) -> bool {
     let Some(host) = single(headers, header::HOST) else { return false };
     // A host in the HTTP request line takes precedence over the `Host` header (RFC 9112, section 3.2.2).
     let is_named_alike = target.authority().is_none_or(|authority| authority.as_str() == host);
@@ -169,7 +148,7 @@ pub(super) fn has_own_host(headers: &HeaderMap, target: &Uri, has_code: bool) ->
 
 /// Whether an HTTP request has no `Origin` header, or this server's own origin. Browsers always send the `Origin`
 /// header when a page opens a WebSocket.
-pub(super) fn has_own_origin(headers: &HeaderMap) -> bool {
+fn has_own_origin(headers: &HeaderMap) -> bool {
     if !headers.contains_key(header::ORIGIN) {
         return true;
     }

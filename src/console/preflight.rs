@@ -35,6 +35,7 @@ pub fn checks(session: &Session, model: &ConsoleModel) -> Vec<PreflightCheck> {
     checks.extend(model.display.as_ref().map(|display| display.check(session.spec.participant.gaze)));
     checks.extend(probes(session, model));
     checks.extend([robot(session, model), recording(model), space(model.free_bytes), keyboard(model)]);
+    checks.extend(model.films.as_ref().map(|films| films.check.clone()));
     checks.extend(model.viewers.as_ref().map(viewers));
     checks.extend(model.lsl.as_ref().map(lsl));
     checks

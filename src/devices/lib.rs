@@ -1,18 +1,21 @@
 //! What a session has around it: eye trackers ([`pupil`], [`gaze_json`], [`lsl`], [`gaze_file`]), the participant's display
 //! ([`sight`]: what the page may see; `display`: the server with its page), and Rerun (`scene`: a session as entities;
-//! `rerun`, `stream`, `rrd`: viewers and files), and programs that take the part of a concept or of the participant
-//! ([`external`]).
+//! `rerun`, `stream`, `rrd`: viewers and files), programs that take the part of a concept or of the participant
+//! ([`external`]), and cameras that film the room ([`film_recorder`]).
 //!
 //! The crate knows nothing of the console and of studies.
 
 #![deny(unsafe_code)]
 
 mod arrival;
+pub mod child_process;
 mod compared_clock;
 pub mod connection_table;
 #[cfg(feature = "display")]
 pub mod display;
 pub mod external;
+pub mod ffmpeg;
+pub mod film_recorder;
 mod gaze_connection;
 pub mod gaze_file;
 mod gaze_gate;

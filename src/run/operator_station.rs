@@ -13,6 +13,7 @@ use tokio::sync::oneshot;
 use tokio::time::timeout;
 
 use super::error::{LiveError, TerminalError};
+use super::recorded_films::RecordedFilms;
 use crate::console::ConsoleMessage;
 use crate::console::preflight::GazePairing;
 use crate::console::view::theme::Theme;
@@ -57,6 +58,8 @@ pub(super) struct OperatorStation {
     pub tracker: GazeTracker,
     pub display: StationDisplay,
     pub lsl: LslOutput,
+    /// Films of recordings that are over.
+    pub films: RecordedFilms,
 }
 
 /// The wizard's input from the terminal, and termination signals from the system.
@@ -121,7 +124,7 @@ impl OperatorStation {
         let jobs = JobControl::start().map_err(TerminalError)?;
         let input = OperatorInput { terminal, jobs, end: Box::pin(asked_to_end()) };
         let (tracker, display, lsl) = (GazeTracker::default(), StationDisplay::default(), LslOutput::default());
-        Ok(OperatorStation { screen, theme, input, tracker, display, lsl })
+        Ok(OperatorStation { screen, theme, input, tracker, display, lsl, films: RecordedFilms::default() })
     }
 
     /// Sets the terminal up again after the program was stopped; with `stops`, gives the terminal back and stops the

@@ -16,6 +16,8 @@ use super::ffmpeg::{self, FfmpegMessage};
 /// Time after which a camera without a new picture counts as lost; cameras take some seconds to open.
 const SILENT: Duration = Duration::from_secs(5);
 const OPENS_WITHIN: Duration = Duration::from_secs(15);
+/// How old the first picture can be when ffmpeg tells its time; a time before that is of another clock.
+const OLDEST_FIRST: Duration = Duration::from_secs(30);
 
 /// State of a camera's recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -35,6 +37,8 @@ pub struct FilmRecorder {
     process: ChildProcess,
     started: Instant,
     heard: Arc<Mutex<Heard>>,
+    /// ffmpeg leaves films as they are if it is asked again and again.
+    is_asked: bool,
 }
 
 /// What ffmpeg has said.
@@ -76,7 +80,7 @@ impl FilmRecorder {
                 lock(&heard).is_over = true;
             });
         }
-        Ok(FilmRecorder { process, started: Instant::now(), heard })
+        Ok(FilmRecorder { process, started: Instant::now(), heard, is_asked: false })
     }
 
     pub fn state(&self) -> FilmState {
@@ -94,8 +98,10 @@ impl FilmRecorder {
     }
 
     /// Asks ffmpeg to end the film.
-    pub fn ask_to_end(&self) {
-        self.process.ask_to_end();
+    pub fn ask_to_end(&mut self) {
+        if !std::mem::replace(&mut self.is_asked, true) {
+            self.process.ask_to_end();
+        }
     }
 
     /// Waits until ffmpeg has closed the film, but no longer than this.
@@ -110,10 +116,14 @@ impl Heard {
         match message {
             FfmpegMessage::Frame(time_s) => {
                 self.last = Some(Instant::now());
-                // Input without times of the wall clock would be this program's fault.
-                let since_1970 = Duration::try_from_secs_f64(time_s).ok();
-                self.first =
-                    self.first.or_else(|| since_1970.and_then(|since| SystemTime::UNIX_EPOCH.checked_add(since)));
+                if self.first.is_none() {
+                    let now = SystemTime::now();
+                    let since_1970 = Duration::try_from_secs_f64(time_s).ok();
+                    let told = since_1970.and_then(|since| SystemTime::UNIX_EPOCH.checked_add(since));
+                    let is_recent = |told: &SystemTime| now.duration_since(*told).is_ok_and(|age| age <= OLDEST_FIRST);
+                    // Some drivers stamp by a clock of their own: then the first picture counts as taken when it arrives.
+                    self.first = Some(told.filter(is_recent).unwrap_or(now));
+                }
             }
             FfmpegMessage::Fault(words) => self.fault = Some(words),
         }

@@ -128,7 +128,8 @@ impl RecordedTimes {
 
     /// The films in the folder that the program recorded; of a recording in parts, those of the last part.
     fn own(&self) -> Vec<PathBuf> {
-        let mut names: Vec<&str> = self.began.iter().map(|(name, _)| name.as_str()).collect();
+        let names = self.began.iter().map(|(name, _)| name.as_str());
+        let mut names: Vec<&str> = names.filter(|name| is_recorded_film(name)).collect();
         names.sort_unstable();
         names.dedup();
         names.iter().map(|name| self.folder.join(name)).filter(|film| film.is_file()).collect()
@@ -137,7 +138,7 @@ impl RecordedTimes {
     /// When a film began that the program recorded, at this path.
     fn began(&self, path: &Path) -> Option<SessionTime> {
         let name = within(&self.folder, path);
-        let is_it = |(file, _): &&(String, SessionTime)| name == Path::new(file) && is_recorded_film(file);
+        let is_it = |(file, _): &&(String, SessionTime)| is_recorded_film(file) && name == Path::new(file);
         self.began.iter().rfind(is_it).map(|(_, began)| *began)
     }
 }

@@ -22,9 +22,9 @@ pub(super) struct RecordedFilms {
 
 impl RecordedFilms {
     /// Closes the films of a recording that is over, and attaches them to it.
-    pub fn close(&mut self, films: Vec<FilmRecorder>, folder: PathBuf) {
+    pub fn close(&mut self, mut films: Vec<FilmRecorder>, folder: PathBuf) {
         self.attaching.push(thread::spawn(move || {
-            films.iter().for_each(FilmRecorder::ask_to_end);
+            films.iter_mut().for_each(FilmRecorder::ask_to_end);
             films.into_iter().for_each(|film| film.finish(CLOSES_WITHIN));
             match film::attach(&folder, &[], FilmAlignmentRequest::Flashes, film::FilmPlace::Stays, || ()) {
                 Ok(attached) => attached.iter().map(|film| film::describe(film) + "\n").collect(),

@@ -27,6 +27,7 @@ pub(super) struct Filming {
     cameras: Vec<FilmingCamera>,
     /// When the films end, once the trial has.
     ends: Option<Instant>,
+    is_over: bool,
 }
 
 #[derive(Debug)]
@@ -82,8 +83,11 @@ impl Filming {
     /// What has happened to the films since this was last asked.
     pub fn news(&mut self, now: SessionTime) -> Vec<FilmEvent> {
         if self.ends.is_some_and(|ends| ends <= Instant::now()) {
-            self.cameras.iter().filter_map(|camera| camera.recorder.as_ref()).for_each(FilmRecorder::ask_to_end);
-            // What ends now is not lost.
+            self.is_over = true;
+            self.cameras.iter_mut().filter_map(|camera| camera.recorder.as_mut()).for_each(FilmRecorder::ask_to_end);
+        }
+        // What ends after the trial is not lost.
+        if self.is_over {
             return Vec::new();
         }
         self.cameras.iter_mut().flat_map(|camera| camera.news(now)).collect()
@@ -92,14 +96,13 @@ impl Filming {
     /// How the cameras do; `None` in a session without any.
     pub fn status(&self) -> Option<FilmStatus> {
         let spec = self.spec.as_ref()?;
-        let is_over = self.ends.is_some_and(|ends| ends <= Instant::now());
         let films = |camera: &&FilmingCamera| camera.has_begun && !camera.is_lost;
         Some(FilmStatus {
             check: self.check.clone()?,
             cameras: spec.devices.len(),
             filming: self.cameras.iter().filter(films).count(),
             lost: self.cameras.iter().filter(|camera| camera.is_lost).count(),
-            is_on: !self.cameras.is_empty() && !is_over,
+            is_on: !self.cameras.is_empty() && !self.is_over,
         })
     }
 

@@ -265,6 +265,7 @@ impl Live {
     fn begin_filming(&mut self) {
         let (filming, lost) = Filming::at(self.engine.session(), self.log.folder());
         self.filming = filming;
+        self.model.films = self.filming.status();
         self.record_films(lost);
     }
 

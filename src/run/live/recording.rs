@@ -87,7 +87,6 @@ impl Live {
             }
             self.input(Event::Film(event));
         }
-        self.model.films = self.filming.status();
     }
 
     /// Has the terminal ring with the next frame, if the session asks for that.
@@ -152,6 +151,7 @@ impl Live {
         if self.engine.session().phase != TrialPhase::Closed {
             self.record_films(films);
         }
+        self.model.films = self.filming.status();
         if let Some(by_ms) = self.clock.jump() {
             self.input(Event::ClockJumped { by_ms });
             let ahead_s = by_ms as f64 / 1000.0;

@@ -66,7 +66,7 @@ fn a_trial_is_filmed_a_lost_camera_is_told_and_the_film_is_attached() {
     let out = terminal.recordings();
     terminal.run(&["operate", &session, "--out", &out, "--participant", "keyboard", "--gaze", "mouse"]);
     terminal.see("film idle");
-    terminal.key("f");
+    terminal.key("C-f");
     terminal.see("there is no camera /dev/no-camera");
     terminal.key("Escape");
     terminal.begin();
@@ -168,4 +168,52 @@ fn a_film_that_viewers_do_not_play_is_converted_and_the_copy_keeps_its_times() {
     let again = video(&[&log, &film, "--convert", "--offset", "-1.5"]);
     assert_eq!(again.status.code(), Some(2), "{again:?}");
     assert!(String::from_utf8_lossy(&again.stderr).contains("a file of this name beside the log"), "{again:?}");
+}
+
+#[test]
+fn a_film_of_pupil_capture_is_attached_without_a_flash() {
+    if !has_ffmpeg() {
+        return;
+    }
+    let folder = crate::program::folder("film-pupil");
+    let recording = folder.join("2026-03-14-P07-1");
+    fs::create_dir_all(&recording).expect("a folder");
+    // Capture's clock is 5000 s ahead of the session's.
+    let log = fs::read_to_string("tests/golden/format-3-hand.jsonl").expect("a golden recording");
+    let stamped =
+        log.replacen("\"gaze\":\"mouse\"", "\"gaze\":\"pupil\"", 1).lines().fold(String::new(), |text, line| {
+            let event: Value = serde_json::from_str(line).expect("JSON");
+            let line = match (event["kind"].as_str(), event["t_ns"].as_i64()) {
+                (Some("gaze"), Some(t_ns)) => {
+                    let stamps = format!(",\"device_ns\":{},\"taken_ns\":{t_ns}}}", t_ns + 5_000_000_000_000);
+                    format!("{}{stamps}", line.strip_suffix('}').expect("an object"))
+                }
+                _ => line.to_string(),
+            };
+            text + &line + "\n"
+        });
+    fs::write(recording.join("events.jsonl"), stamped).expect("written");
+    let film = folder.join("world.mp4");
+    let mut make = Command::new("ffmpeg");
+    make.args(["-v", "error", "-f", "lavfi", "-i", "testsrc=size=160x90:rate=5:duration=20"]).arg(&film);
+    assert!(make.status().expect("ffmpeg").success());
+    // It begins 100 s after the session.
+    let stamps = |number: usize| {
+        let head = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({number},), }}\n");
+        let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+        bytes.extend((head.len() as u16).to_le_bytes());
+        bytes.extend(head.as_bytes());
+        bytes.extend((0..number).flat_map(|frame| (5100.0 + frame as f64 / 5.0).to_le_bytes()));
+        fs::write(folder.join("world_timestamps.npy"), bytes).expect("written");
+    };
+    let [log, film] = [&recording, &film].map(|path| path.display().to_string());
+    stamps(99);
+    let told = video(&[&log, &film]);
+    assert_eq!(told.status.code(), Some(2), "{told:?}");
+    assert!(String::from_utf8_lossy(&told.stderr).contains("100 pictures and 99 time stamps"), "{told:?}");
+    stamps(100);
+    let found = json(&["video", "attach", &log, &film]);
+    let one = &found["films"][0];
+    assert_eq!(one["by"].as_str(), Some("pupil_clock"), "{found}");
+    assert!((one["offset_s"].as_f64().expect("a number") + 100.0).abs() < 1e-3, "{found}");
 }

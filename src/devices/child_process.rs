@@ -65,13 +65,15 @@ impl ChildProcess {
         }
     }
 
-    /// Lets others have the processor first.
-    pub fn yield_to_others(&self) {
+    /// Lets others have the processor first; the more, the larger `by` is, from 1 to 19.
+    pub fn yield_to_others(&self, by: i32) {
         #[cfg(unix)]
         {
             use rustix::process::{Pid, setpriority_process};
-            let _ = setpriority_process(Some(Pid::from_child(&self.child)), 10);
+            let _ = setpriority_process(Some(Pid::from_child(&self.child)), by);
         }
+        #[cfg(not(unix))]
+        let _ = by;
     }
 
     /// Waits until the program has ended, but no longer than this; returns whether it has.

@@ -68,7 +68,7 @@ impl FilmRecorder {
         let mut out = std::ffi::OsString::from("file:");
         out.push(film);
         let mut process = ChildProcess::start(command.arg(out))?;
-        process.yield_to_others();
+        process.yield_to_others(5);
         let heard = Arc::new(Mutex::new(Heard::default()));
         if let Some(log) = process.child().stderr.take() {
             let heard = heard.clone();

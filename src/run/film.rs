@@ -357,7 +357,7 @@ fn convert(film: &Path, folder: &Path) -> Result<(PathBuf, f64), FilmError> {
     command.args(["-c:v", "libx264", "-preset", "veryfast", "-crf", "20", "-pix_fmt", "yuv420p", "-c:a", "aac"]);
     command.args(["-movflags", "+faststart", "-f", "mp4", "-y"]).arg(address(new.path()));
     let mut process = ChildProcess::start(&mut command).map_err(FilmError::NoDecoder)?;
-    process.yield_to_others();
+    process.yield_to_others(10);
     let mut fault = None;
     if let Some(log) = process.child().stderr.take() {
         ffmpeg::read_messages(log, |message| {
@@ -514,7 +514,7 @@ fn decode_some(film: &Path, most: Option<u32>, mut each: impl FnMut(f64, &[u8]))
     }
     command.args(["-r", "25", "-f", "rawvideo", "pipe:1"]).stdout(Stdio::piped());
     let mut process = ChildProcess::start(&mut command).map_err(FilmError::NoDecoder)?;
-    process.yield_to_others();
+    process.yield_to_others(10);
     let undecodable = |reason: String| FilmError::Undecodable { film: film.to_path_buf(), reason };
     let (Some(mut frames), Some(log)) = (process.child().stdout.take(), process.child().stderr.take()) else {
         return Err(undecodable("its output cannot be read".to_string()));

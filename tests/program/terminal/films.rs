@@ -1,7 +1,7 @@
 //! Trials that are filmed, by ffmpeg's own test picture in place of a camera.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use serde_json::Value;
@@ -216,4 +216,54 @@ fn a_film_of_pupil_capture_is_attached_without_a_flash() {
     let one = &found["films"][0];
     assert_eq!(one["by"].as_str(), Some("pupil_clock"), "{found}");
     assert!((one["offset_s"].as_f64().expect("a number") + 100.0).abs() < 1e-3, "{found}");
+}
+
+/// A recording whose page flashes three times, and a film of its own of them that began `late_s` later than the log says.
+fn filmed_with_flashes(name: &str, late_s: f64) -> PathBuf {
+    let recording = crate::program::folder(name).join("2026-03-14-P07-1");
+    fs::create_dir_all(&recording).expect("a folder");
+    let log = fs::read_to_string("tests/golden/format-3-hand.jsonl").expect("a golden recording");
+    let (mut flashes, mut began_s) = (Vec::new(), None);
+    let changed = log.lines().fold(String::new(), |text, line| {
+        let event: Value = serde_json::from_str(line).expect("JSON");
+        let time_s = event["t_ns"].as_f64().unwrap_or_default() / 1e9;
+        let start = format!("{{\"seq\":{},\"t_ns\":{},", event["seq"], event["t_ns"]);
+        // Events about which nothing else depends become what the film is aligned with.
+        let line = match event["kind"].as_str() {
+            Some("gaze") if began_s.is_none() && time_s > 10.0 => {
+                began_s = Some(time_s);
+                format!("{start}\"kind\":\"film\",\"what\":\"began\",\"camera\":1,\"file\":\"film-1.mp4\",\"began_ns\":{}}}", event["t_ns"])
+            }
+            Some("gaze") if [14.0, 20.0, 31.0].get(flashes.len()).is_some_and(|wanted| time_s > *wanted) => {
+                flashes.push(time_s);
+                format!("{start}\"kind\":\"display\",\"what\":\"drawn\",\"cue\":0,\"at_ns\":{}}}", event["t_ns"])
+            }
+            _ => line.to_string(),
+        };
+        text + &line + "\n"
+    });
+    fs::write(recording.join("events.jsonl"), changed).expect("written");
+    let began_s = began_s.expect("gaze") + late_s;
+    let lit: Vec<String> = flashes.iter().map(|at| format!("between(t,{0},{0}+0.2)", at - began_s)).collect();
+    let square = format!("drawbox=x=200:y=100:w=30:h=30:c=white:t=fill:enable='{}'", lit.join("+"));
+    let mut make = Command::new("ffmpeg");
+    make.args(["-v", "error", "-f", "lavfi", "-i", "color=black:size=320x180:rate=30:duration=30", "-vf", &square]);
+    assert!(make.arg(recording.join("film-1.mp4")).status().expect("ffmpeg").success());
+    recording
+}
+
+#[test]
+fn an_own_film_is_aligned_by_flashes_that_are_near_and_else_by_its_times() {
+    if !has_ffmpeg() {
+        return;
+    }
+    for (name, late_s, by) in [("film-near", 0.12, "flashes"), ("film-far", 2.0, "recorded")] {
+        let recording = filmed_with_flashes(name, late_s);
+        let began_s = began_s(&fs::read_to_string(recording.join("events.jsonl")).expect("a log"));
+        let found = json(&["video", "attach", &recording.display().to_string()]);
+        let one = &found["films"][0];
+        assert_eq!((one["by"].as_str(), one["file"].as_str()), (Some(by), Some("film-1.mp4")), "{found}");
+        let truth = -began_s - if by == "flashes" { late_s } else { 0.0 };
+        assert!((one["offset_s"].as_f64().expect("a number") - truth).abs() < 1.0 / 30.0, "{truth}: {found}");
+    }
 }

@@ -38,7 +38,7 @@ const RECORDING: &str = include_str!("../../../golden/format-3-hand.jsonl");
 pub type Reader = fn(&[u8]);
 
 /// The readers with the names that `tests/fuzz/run` takes.
-pub const READERS: [(&str, Reader); 24] = [
+pub const READERS: [(&str, Reader); 25] = [
     ("layout", layout),
     ("recipes", recipes),
     ("session", session),

@@ -8,8 +8,9 @@ use serde::Serialize;
 use super::failure::Failure;
 use super::list::{chosen, exists};
 use super::output::{OutputFormat, print, progress};
-use crate::run::film::{self, FilmAlignmentRequest, FilmError};
-use tomcom_session::log::video_file::{AttachedFilm, FilmAlignmentSource};
+use crate::run::film::{self, FilmAlignmentRequest, FilmError, FilmPlace};
+use tomcom_core::base::text::count;
+use tomcom_session::log::video_file::AttachedFilm;
 
 /// Attaches films of the room to a recording.
 #[derive(Debug, Args)]
@@ -27,15 +28,16 @@ enum VideoCommand {
 /// Aligns films with a recording, and writes video.json beside its log.
 ///
 /// The flashes of the participant's page are looked for in each film (decoded by the program ffmpeg), and give offset and
-/// drift of the film's clock. A film that does not fit is refused. The film stays where it is.
+/// drift of the film's clock. A film that does not fit is refused. The film stays where it is. A film of Pupil Capture
+/// (world.mp4 with world_timestamps.npy beside it) needs no flash, nor does one that the session recorded itself.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples: tomcom video attach sessions/2026-03-14-P07-1 room.mp4 hands.mp4\n          \
                   tomcom video attach sessions/2026-03-14-P07-1 room.mp4 --at 12.4\nMore: docs/video.md")]
 struct AttachArgs {
     /// The folder of a recording.
     recording: PathBuf,
-    /// Films of its trial, one for each camera.
-    #[arg(required = true, value_name = "FILM")]
+    /// Films of its trial, one for each camera; by default those that the session recorded itself.
+    #[arg(value_name = "FILM")]
     films: Vec<PathBuf>,
     /// Time in the film at which the trial starts, in seconds, where no flash is seen.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds, conflicts_with = "offset")]
@@ -46,6 +48,10 @@ struct AttachArgs {
     /// Copy the films into the recording's folder.
     #[arg(long)]
     copy: bool,
+    /// Attach copies in H.264 (MP4, at most 720 lines) in the recording's folder, for viewers that do not play the films. A
+    /// film that is attached already keeps its alignment.
+    #[arg(long, conflicts_with = "copy")]
+    convert: bool,
     /// Output format.
     #[arg(long, value_enum, default_value = "text")]
     format: OutputFormat,
@@ -56,7 +62,9 @@ impl From<FilmError> for Failure {
         match error {
             FilmError::File(error) => Failure::from(*error),
             FilmError::Recording(error) => Failure::from(error),
-            error @ FilmError::NoDecoder(_) => Failure::Failed(miette::Report::new(error)),
+            error @ (FilmError::NoDecoder(_) | FilmError::NotConverted { .. }) => {
+                Failure::Failed(miette::Report::new(error))
+            }
             error @ (FilmError::Undecodable { .. } | FilmError::NotAligned { .. }) => {
                 Failure::Wrong(miette::Report::new(error))
             }
@@ -84,29 +92,23 @@ pub(super) fn video(args: &VideoArgs) -> Result<(), Failure> {
         (None, Some(film_s)) => FilmAlignmentRequest::TrialStart(film_s),
         (None, None) => FilmAlignmentRequest::Flashes,
     };
-    if request != FilmAlignmentRequest::Flashes && args.films.len() > 1 {
-        let found = format!("one time by hand for {} films", args.films.len());
+    if request != FilmAlignmentRequest::Flashes && args.films.len() != 1 {
+        let found = format!("one time by hand for {}", count(args.films.len() as u64, "film", "films"));
         let help = "a command for each film, since each camera began at a time of its own";
         return Err(Failure::Wrong(miette::miette!(help = help, "found {found}")));
     }
     let recording = chosen(&args.recording, "attach to it")?;
     let bar = progress(0, "seconds of film");
-    let films = film::attach(&recording, &args.films, request, args.copy, || {
+    let place = match (args.copy, args.convert) {
+        (true, _) => FilmPlace::Copied,
+        (false, true) => FilmPlace::Converted,
+        (false, false) => FilmPlace::Stays,
+    };
+    let films = film::attach(&recording, &args.films, request, place, || {
         bar.inc_length(1);
         bar.inc(1);
     })?;
     bar.finish_and_clear();
-    let text: String = films.iter().map(|film| describe(film) + "\n").collect();
+    let text: String = films.iter().map(|film| film::describe(film) + "\n").collect();
     print(args.format, &AttachSummary { films }, || text)
-}
-
-fn describe(film: &AttachedFilm) -> String {
-    let AttachedFilm { file, offset_s, drift_ppm, .. } = film;
-    match (film.by, film.flashes, film.residual_ms) {
-        (FilmAlignmentSource::Flashes, Some(flashes), Some(residual_ms)) => format!(
-            "{file}: the session begins at {offset_s:.3} s of the film, drift {drift_ppm:.0} ppm; {flashes} flashes fit to \
-             {residual_ms:.0} ms"
-        ),
-        _ => format!("{file}: the session begins at {offset_s:.3} s of the film, as given"),
-    }
 }

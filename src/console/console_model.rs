@@ -26,7 +26,7 @@ use tomcom_core::measures::wizard_performance::WizardMeasures;
 use tomcom_session::history::belief_track::BeliefHistory;
 use tomcom_session::history::comparison::{SenderComparison, UnmatchedCommunication};
 use tomcom_session::history::error_reasons::ExplainedError;
-use tomcom_session::preflight_checks::RejectedGaze;
+use tomcom_session::preflight_checks::{PreflightCheck, RejectedGaze};
 use tomcom_session::replay::ReplayLandmark;
 use tomcom_session::{Event, TimelineEntry, TimelineEvent};
 
@@ -90,6 +90,19 @@ pub struct RerunStreamStatus {
     pub dropped: u64,
 }
 
+/// State of the films that the session records.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FilmStatus {
+    /// Whether the trial can be filmed, as was found before it.
+    pub check: PreflightCheck,
+    pub cameras: usize,
+    /// Number of cameras whose pictures arrive.
+    pub filming: usize,
+    pub lost: usize,
+    /// Whether the cameras are to film now.
+    pub is_on: bool,
+}
+
 /// State of the outgoing streams of the Lab Streaming Layer (LSL).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LslStatus {
@@ -122,6 +135,7 @@ pub struct ConsoleModel {
     pub recording: RecordingStatus,
     pub viewers: Option<RerunStreamStatus>,
     pub lsl: Option<LslStatus>,
+    pub films: Option<FilmStatus>,
     /// Free disk space of the recording's folder in bytes; `None` if unknown.
     pub free_bytes: Option<u64>,
     /// Panel that is shown alone at full size.
@@ -207,6 +221,7 @@ impl ConsoleModel {
             recording: RecordingStatus::Off,
             viewers: None,
             lsl: None,
+            films: None,
             free_bytes: None,
             alone: None,
             focus: None,

@@ -36,6 +36,7 @@ pub fn checks(session: &Session, model: &ConsoleModel) -> Vec<PreflightCheck> {
     checks.extend(model.observers.as_ref().map(ObserverStatus::check));
     checks.extend(probes(session, model));
     checks.extend([robot(session, model), recording(model), space(model.free_bytes), keyboard(model)]);
+    checks.extend(model.films.as_ref().map(|films| films.check.clone()));
     checks.extend(model.viewers.as_ref().map(viewers));
     checks.extend(model.lsl.as_ref().map(lsl));
     checks

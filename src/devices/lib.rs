@@ -2,18 +2,21 @@
 //! ([`sight`]: what the page may see; `display`: the server with its page), the observers' page of
 //! the wizard's screen (`observers`), Rerun (`scene`: a session as entities;
 //! `rerun`, `stream`, `rrd`: viewers and files), programs that take the part of a concept or of the participant
-//! ([`external`]), and a simulated controller of a UR5 (`ur`).
+//! ([`external`]), cameras that film the room ([`film_recorder`]), and a simulated controller of a UR5 (`ur`).
 //!
 //! The crate knows nothing of the console and of studies.
 
 #![deny(unsafe_code)]
 
 mod arrival;
+pub mod child_process;
 mod compared_clock;
 pub mod connection_table;
 #[cfg(feature = "display")]
 pub mod display;
 pub mod external;
+pub mod ffmpeg;
+pub mod film_recorder;
 mod gaze_connection;
 pub mod gaze_file;
 mod gaze_gate;

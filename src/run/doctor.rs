@@ -66,7 +66,7 @@ pub fn examine(spec: &SessionSpec, kitchen: &Kitchen, out: &Path) -> DoctorRepor
     add("for the participant's page", devices::display(spec).into_iter().collect());
     #[cfg(feature = "rerun")]
     add("for Rerun", vec![viewer()]);
-    add("for films beside recordings", vec![films::decoder()]);
+    add("for films beside recordings", films::checks(spec.video.as_ref()));
     add("for parts that this program was built without", left_out().collect());
     add("for the Lab Streaming Layer", devices::lsl(spec).into_iter().collect());
     add("for gaze", devices::gaze(spec, kitchen));

@@ -5,13 +5,14 @@ use std::ffi::OsString;
 use std::io::{ErrorKind, Read, Write};
 use std::os::unix::net::UnixStream;
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
 use tomcom_core::base::time::SessionTime;
+use tomcom_devices::child_process::ChildProcess;
 use tomcom_session::log::video_file::AttachedFilm;
 
 /// Time that mpv has to open its socket.
@@ -28,7 +29,7 @@ const SPEEDS: (f64, f64) = (0.01, 100.0);
 /// A film in a window of mpv.
 pub struct FilmPlayer {
     film: AttachedFilm,
-    process: Child,
+    process: ChildProcess,
     /// Its socket is in a folder that no other account can enter.
     folder: TempDir,
     opened: Instant,
@@ -62,7 +63,7 @@ impl FilmPlayer {
         command.args(["--no-terminal", "--pause", "--keep-open=always", "--hr-seek=yes", "--force-window=yes"]);
         command.args(["--no-resume-playback", "--really-quiet"]).arg(address).arg("--").arg(path);
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-        let process = command.spawn().map_err(|error| match error.kind() {
+        let process = ChildProcess::start(&mut command).map_err(|error| match error.kind() {
             ErrorKind::NotFound => "mpv is not installed".to_string(),
             _ => format!("mpv cannot be started: {error}"),
         })?;
@@ -74,7 +75,7 @@ impl FilmPlayer {
     /// Shows what the film has at this moment of the session, which plays with this speed (0: paused). Returns whether the
     /// player is there still.
     pub fn show(&mut self, time: SessionTime, speed: f64) -> bool {
-        if self.process.try_wait().is_ok_and(|ended| ended.is_some()) {
+        if self.process.child().try_wait().is_ok_and(|ended| ended.is_some()) {
             return false;
         }
         if self.socket.is_none() {
@@ -169,13 +170,6 @@ impl FilmPlayer {
             self.heard.clear();
         }
         Some(told)
-    }
-}
-
-impl Drop for FilmPlayer {
-    fn drop(&mut self) {
-        let _ = self.process.kill();
-        let _ = self.process.wait();
     }
 }
 

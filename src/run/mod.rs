@@ -31,6 +31,7 @@ mod participant_link;
 pub mod picture_file;
 pub mod plan;
 mod rater_files;
+mod recorded_films;
 pub mod recording_list;
 pub mod resume;
 pub mod review_console;

@@ -301,7 +301,8 @@ fn playing(recordings: &[PathBuf], with_films: bool) -> FileResult<Vec<Playing>>
     let one = |(nth, recording): (usize, &PathBuf)| {
         let mut playing = Playing::open(recording)?;
         if with_films {
-            playing.films = films(recording)?.into_iter().filter(|(path, _)| unplayable(path).is_none()).collect();
+            playing.films =
+                films(recording)?.into_iter().filter(|(path, _)| unplayable(recording, path).is_none()).collect();
         }
         // Paths of lanes are shown: a name as it is, numbered only where another recording has it, too.
         let sign = |sign: char| if sign.is_alphanumeric() || "-._".contains(sign) { sign } else { '_' };
@@ -358,17 +359,14 @@ fn films(recording: &Path) -> FileResult<Vec<(PathBuf, AttachedFilm)>> {
 }
 
 /// Why Rerun cannot show a film, in words.
-fn unplayable(film: &Path) -> Option<String> {
+fn unplayable(recording: &Path, film: &Path) -> Option<String> {
     let path = film.display();
+    let copy = format!("a copy in H.264: tomcom video attach {} {path} --convert", recording.display());
     let end = film.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     match film.metadata() {
         Err(reason) => Some(format!("{path}: {reason}")),
-        Ok(data) if data.len() > MOST_FILM => Some(format!(
-            "{path}: too large for Rerun; a smaller copy: ffmpeg -i FILM -vf scale=-2:540 -c:v libx264 -an COPY.mp4, and attach it"
-        )),
-        Ok(_) if end != "mp4" && end != "m4v" => Some(format!(
-            "{path}: Rerun plays MP4; a copy in H.264: ffmpeg -i FILM -c:v libx264 -an COPY.mp4, and attach it"
-        )),
+        Ok(data) if data.len() > MOST_FILM => Some(format!("{path}: too large for Rerun; {copy}")),
+        Ok(_) if end != "mp4" && end != "m4v" => Some(format!("{path}: Rerun plays MP4; {copy}")),
         Ok(_) => None,
     }
 }
@@ -380,7 +378,7 @@ fn unplayable(film: &Path) -> Option<String> {
 pub fn unshown_films(recordings: &[PathBuf]) -> FileResult<Vec<String>> {
     let mut unshown = Vec::new();
     for recording in recordings {
-        unshown.extend(films(recording)?.iter().filter_map(|(path, _)| unplayable(path)));
+        unshown.extend(films(recording)?.iter().filter_map(|(path, _)| unplayable(recording, path)));
     }
     Ok(unshown)
 }

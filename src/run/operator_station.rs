@@ -13,6 +13,7 @@ use tokio::sync::oneshot;
 use tokio::time::timeout;
 
 use super::error::{LiveError, TerminalError};
+use super::recorded_films::RecordedFilms;
 use crate::console::ConsoleMessage;
 use crate::console::preflight::GazePairing;
 use crate::console::view::theme::Theme;
@@ -64,6 +65,8 @@ pub(super) struct OperatorStation {
     pub display: StationDisplay,
     pub observers: StationObservers,
     pub lsl: LslOutput,
+    /// Films of recordings that are over.
+    pub films: RecordedFilms,
 }
 
 /// The wizard's input from the terminal, and termination signals from the system.
@@ -135,7 +138,7 @@ impl OperatorStation {
         let input = OperatorInput { terminal, jobs, end: Box::pin(asked_to_end()) };
         let (tracker, display, lsl) = (GazeTracker::default(), StationDisplay::default(), LslOutput::default());
         let observers = StationObservers::default();
-        Ok(OperatorStation { screen, theme, input, tracker, display, observers, lsl })
+        Ok(OperatorStation { screen, theme, input, tracker, display, observers, lsl, films: RecordedFilms::default() })
     }
 
     /// Draws this in the terminal, and shows it to the observers.

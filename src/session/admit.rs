@@ -5,7 +5,7 @@ use crate::event::{SignalEndReason, TrialEndReason};
 use crate::probes::{self, ProbeEvent};
 use crate::protocol::{self, ProtocolEvent};
 use crate::settings::{ArmKind, Condition, ParticipantKind};
-use crate::{Event, Session, TimelineEvent, TrialPhase, gaze_check, person_code, tracker};
+use crate::{Event, Session, TimelineEvent, TrialPhase, film, gaze_check, person_code, tracker};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::{self, Sender, Signal};
@@ -54,6 +54,7 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
             unless(is_open, "no time mark of this number waits for words")
         }
         Event::Tracker(event) => tracker::admit(event),
+        Event::Film(event) => film::admit(event),
         Event::Calibration(event) => gaze_check::admit(session, event),
         Event::RobotMoves(_) | Event::RobotSafety { .. } | Event::RobotTouched { .. } => refuse_if(
             session.spec.robot.arm == ArmKind::Timed,
@@ -167,6 +168,7 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         | Event::Preflight { .. }
         | Event::Screen(_)
         | Event::Display(_)
+        | Event::Film(_)
         | Event::Unblinded { .. }
         | Event::SignalDrawn { .. }
         | Event::FocusLost

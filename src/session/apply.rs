@@ -159,7 +159,7 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
         Event::Unblinded { .. } => session.unblinded = true,
         Event::Screen(_) => session.has_console = true,
         Event::HumanWaits { .. } => await_press(session, now, &mut effects),
-        Event::Preflight { .. } | Event::Display(_) | Event::SignalDrawn { .. } => {}
+        Event::Preflight { .. } | Event::Display(_) | Event::Film(_) | Event::SignalDrawn { .. } => {}
         Event::ClockJumped { .. } | Event::ParticipantBelieves(_) | Event::BeliefEstimated(_) => {}
         Event::SessionEnded => close(session, now, &mut effects),
     }

@@ -6,6 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::external::ExternalEvent;
+use crate::film::FilmEvent;
 use crate::gaze_check::GazeCheckEvent;
 use crate::preflight_checks::PreflightCheck;
 use crate::probes::ProbeEvent;
@@ -194,6 +195,8 @@ pub enum Event {
     },
     /// Witness.
     Display(DisplayEvent),
+    /// Witness: what happens to a film that the program records.
+    Film(FilmEvent),
     /// Witness: the visible content of the wizard's screen changes.
     Screen(WizardScreenContent),
     /// Witness: from now on the wizard sees how these concepts compare with the wizard.
@@ -248,6 +251,7 @@ impl Event {
             Event::Advised(advice) if advice.words.is_some() => &["words"],
             Event::Tracker(TrackerEvent::Connected { .. }) => &["device"],
             Event::Tracker(TrackerEvent::Lost { .. }) => &["reason"],
+            Event::Film(FilmEvent::Lost { .. }) => &["reason"],
             Event::Tracker(TrackerEvent::OtherSurfaces { .. }) => &["names"],
             Event::Tracker(TrackerEvent::SeveralStreams { .. }) => &["streams"],
             Event::Protocol(ProtocolEvent::ItemAnswered { .. }) => &["answer"],
@@ -317,6 +321,7 @@ pub const MEANINGS: &[(&str, &str)] = &[
     ("clock_jumped", "The wall clock moved against session time: the computer stood still, or its clock was set"),
     ("display", "A report of the participant's display"),
     ("external", "An external concept or participant began, told its belief, was late, or made a fault"),
+    ("film", "A camera's film of the trial began, was lost, or is back"),
     ("focus_lost", "The wizard's terminal lost the keyboard"),
     ("focus_regained", "The wizard's terminal has the keyboard again"),
     ("human_waits", "The participant has not pressed for unusually long by its own intervals"),

@@ -22,6 +22,7 @@ pub mod event;
 pub mod external;
 pub mod features;
 pub mod files;
+pub mod film;
 pub mod follower;
 pub mod gaze_check;
 pub mod gaze_samples;

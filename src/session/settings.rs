@@ -5,6 +5,7 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
+use crate::film::VideoSpec;
 use crate::plan::{PlanPosition, PlanSpec};
 use crate::stream_settings::RerunSpec;
 use crate::study_arm::StudyArm;
@@ -54,6 +55,9 @@ pub struct SessionSpec {
     pub probes: Option<ProbeSpec>,
     #[serde(default)]
     pub rerun: RerunSpec,
+    /// `None`: nothing is filmed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub video: Option<VideoSpec>,
     /// Lab Streaming Layer; `None`: nothing is sent or received.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lsl: Option<LslSpec>,
@@ -119,6 +123,7 @@ impl SessionSpec {
         self.display.check()?;
         self.rerun.check()?;
         self.check_lsl()?;
+        self.video.as_ref().map_or(Ok(()), VideoSpec::check)?;
         if let Some(probes) = &self.probes {
             probes.check(self.trial.seconds)?;
         }
@@ -488,6 +493,8 @@ pub enum BellOccasion {
     Gaze,
     /// In a trial, the participant's page is lost.
     Display,
+    /// A camera is lost.
+    Film,
 }
 
 /// Keys 1 to 5.

@@ -71,10 +71,10 @@ pub fn export(recording: &Path, formats: &[AnnotationFormat], blind: bool) -> Fi
     let kitchen = &replay.session().kitchen;
     let codes = rater_codes::read_all(&folder, &CodableErrors::from_presses(kitchen, &replay.follower.judged))?;
     let whole = annotation_files::whole(&folder)?;
-    let films = video_file::read(&folder)?.films.into_iter().map(|film| {
-        let path = if film.is_inside() { film.path(&whole) } else { film.file.to_path_buf() };
-        (path.to_string_lossy().into_owned(), film)
-    });
+    let films = video_file::read(&folder)?
+        .films
+        .into_iter()
+        .map(|film| (film.path(&whole).to_string_lossy().into_owned(), film));
     let films: Vec<_> = films.collect();
     let name = whole.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let annotations = collector.finish(&replay.follower, (name, started), &codes, &films, blind);

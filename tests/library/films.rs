@@ -1,11 +1,15 @@
-//! Films beside recordings: the alignment by the page's flashes, on curves of brightness, and the file `video.json`.
+//! Films beside recordings: the alignment by the page's flashes, on curves of brightness, and by a tracker's clock; the file
+//! `video.json`; cameras in settings.
 
 use tomcom_core::base::text::PathText;
+use tomcom_session::film::{ffmpeg_input, film_name, is_recorded_film};
 use tomcom_session::log::RecordingError;
 use tomcom_session::log::video_file::{self, AttachedFilm, FilmAlignmentSource, RecordingFilms};
+use tomcom_study::analysis::film_clock::{self, ClockPair, ClockRefusal};
 use tomcom_study::analysis::film_flashes::{AlignmentRefusal, FLASH_S, FilmAlignment, FlashSearch, align};
 use tomcom_study::annotation_export::{self, AnnotationFormat};
 use tomcom_study::codes::{self, CodedRecording};
+use tomcom_study::files::pupil_timestamps;
 
 use crate::support::*;
 
@@ -140,6 +144,7 @@ fn films_of_a_recording_are_kept_by_file_and_read_back() {
         flashes: Some(5),
         frame_ms: Some(33.33),
         length_s: Some(340.0),
+        copies_of: Vec::new(),
     };
     assert_eq!(video_file::read(folder.path()).expect("no file"), RecordingFilms::default());
     let mut films = RecordingFilms::default();
@@ -151,7 +156,9 @@ fn films_of_a_recording_are_kept_by_file_and_read_back() {
     assert_eq!(video_file::read(folder.path()).expect("read"), films);
     assert!((film("a.mp4", 3.0).film_s(SessionTime::from_secs_f64(1000.0)) - 1003.1).abs() < 1e-9);
     assert_eq!(films.films[0].path(folder.path()), Path::new("/films/room.mp4"));
-    assert_eq!([&films.films[0], &films.films[1]].map(AttachedFilm::is_inside), [false, true]);
+    let mut copy = film("hands-h264.mp4", 2.0);
+    copy.copies_of.push(PathText("/films/hands.webm".into()));
+    assert_eq!(copy.files().map(|file| video_file::is_name(file)).collect::<Vec<_>>(), [true, false]);
     let path = folder.path().join(video_file::VIDEO_NAME);
     for (text, said) in [
         ("{\"films\": [{}]}", "video.json:1: found missing field"),
@@ -159,6 +166,13 @@ fn films_of_a_recording_are_kept_by_file_and_read_back() {
         (
             &serde_json::to_string(&RecordingFilms { films: vec![film("../x/room.mp4", 1.0)] }).expect("JSON"),
             "../x/room.mp4",
+        ),
+        (
+            &serde_json::to_string(&RecordingFilms {
+                films: vec![AttachedFilm { copies_of: vec![PathText("../x/hands.webm".into())], ..film("a.mp4", 1.0) }],
+            })
+            .expect("JSON"),
+            "a.mp4",
         ),
     ] {
         std::fs::write(&path, text).expect("written");
@@ -185,6 +199,7 @@ fn filmed(name: &str) -> (PathBuf, CodedRecording) {
         flashes: None,
         frame_ms: None,
         length_s: None,
+        copies_of: Vec::new(),
     };
     video_file::write(&recording, &RecordingFilms { films: vec![film] }).expect("written");
     let coded = CodedRecording::open(&recording).expect("a recording");
@@ -278,4 +293,108 @@ fn annotations_are_in_step_with_the_film() {
     assert!(lines[at - 1].starts_with(&format!("00:{minutes:02}:{seconds:06.3} --> ")), "{film_s}: {}", lines[at - 1]);
     let kinds: BTreeSet<&str> = lines.iter().filter_map(|line| line.split_once(": ")).map(|(kind, _)| kind).collect();
     assert_eq!(kinds, BTreeSet::from(["errors", "presses human", "presses robot"]), "raters see nothing else");
+}
+
+#[test]
+fn a_camera_is_a_device_or_what_ffmpeg_reads_with_times_of_the_wall_clock() {
+    let words = |device: &str| ffmpeg_input(device).map(|words| words.join(" ")).unwrap_or_default();
+    assert_eq!(words("/dev/video0"), "-f v4l2 -ts abs -i /dev/video0");
+    assert_eq!(ffmpeg_input("/dev/v4l/by-id/a camera").expect("a path").last().expect("it"), "/dev/v4l/by-id/a camera");
+    assert_eq!(
+        words("-f v4l2 -video_size 1280x720 -i /dev/video2"),
+        "-f v4l2 -video_size 1280x720 -ts abs -i /dev/video2"
+    );
+    assert_eq!(words("-i rtsp://10.0.0.7/a"), "-use_wallclock_as_timestamps 1 -i rtsp://10.0.0.7/a");
+    // No input, no output, no second input.
+    for device in ["", "video0", "-i", "-f v4l2 /dev/video0", "-i a.mp4 b.mp4", "-i a -i b", "-i a\n", "-i -i"] {
+        assert_eq!(ffmpeg_input(device), None, "{device:?}");
+    }
+    assert!(is_recorded_film(&film_name(3)) && is_recorded_film("film-12.mp4"));
+    for name in ["film-.mp4", "film-01.mp4", "film-1.mp4.tmp", "film-+1.mp4", "film-1-h264.mp4", "room.mp4"] {
+        assert!(!is_recorded_film(name), "{name}");
+    }
+}
+
+/// Pictures of a film by players and by Capture's clock, and gaze by Capture's clock and the session's.
+fn filmed_by_pupil(length_s: f64) -> (Vec<f64>, Vec<f64>, Vec<ClockPair>) {
+    // The film begins 7 s before the session, and Capture's clock goes 80 ppm faster.
+    let device_s = |session_s: f64| 351_000.0 + session_s * (1.0 + 80e-6);
+    let frames = (length_s * 30.0) as usize;
+    // A camera that waits for light.
+    let times_s: Vec<f64> = (0..frames).map(|number| (number + number / 40 * 2) as f64 / 30.0).collect();
+    let stamps_s = times_s.iter().map(|time_s| device_s(-7.0) + time_s).collect();
+    let gaze = (0..(length_s * 120.0) as usize).map(|number| {
+        let session_s = number as f64 / 120.0;
+        let noise_s = (number * 7919 % 9) as f64 * 1e-3 - 4e-3;
+        ClockPair { device_s: device_s(session_s), session_s: session_s + noise_s }
+    });
+    (times_s, stamps_s, gaze.collect())
+}
+
+#[test]
+fn a_film_of_pupil_capture_is_aligned_by_its_clock() {
+    for length_s in [300.0, 20.0] {
+        let (times_s, stamps_s, gaze) = filmed_by_pupil(length_s);
+        let found = film_clock::align(&times_s, &stamps_s, &gaze).expect("it fits");
+        for session_s in [0.0, length_s / 2.0] {
+            let truth = 7.0 * (1.0 + 80e-6) + session_s * (1.0 + 80e-6);
+            let told = found.offset_s + session_s * (1.0 + found.drift);
+            assert!((told - truth).abs() < 2e-3, "{length_s} s, at {session_s} s: {told}, not {truth}");
+        }
+        assert!(found.residual_s < 6e-3 && (found.frame_s - 1.0 / 30.0).abs() < 1e-9, "{found:?}");
+    }
+    let (times_s, stamps_s, mut gaze) = filmed_by_pupil(100.0);
+    let refusal = |times: &[f64], stamps: &[f64], gaze: &[ClockPair]| {
+        film_clock::align(times, stamps, gaze).expect_err("it does not fit")
+    };
+    assert_eq!(
+        refusal(&times_s[1..], &stamps_s, &gaze),
+        ClockRefusal::Number { frames: times_s.len() - 1, stamps: times_s.len() }
+    );
+    let back: Vec<f64> = stamps_s.iter().rev().copied().collect();
+    assert_eq!(refusal(&times_s, &back, &gaze), ClockRefusal::Order);
+    assert_eq!(refusal(&times_s, &stamps_s, &[]), ClockRefusal::NoGaze);
+    let elsewhere: Vec<f64> = stamps_s.iter().map(|stamp| stamp + 5000.0).collect();
+    assert_eq!(refusal(&times_s, &elsewhere, &gaze), ClockRefusal::Elsewhere);
+    // Capture's clock is set in the middle of the trial.
+    let half = gaze.len() / 2;
+    gaze[half..].iter_mut().for_each(|pair| pair.session_s += 0.5);
+    assert!(matches!(refusal(&times_s, &stamps_s, &gaze), ClockRefusal::Residual { .. }));
+}
+
+#[test]
+fn time_stamps_of_pupil_capture_are_read_as_numpy_writes_them() {
+    let array = |version: u8, head: &str, numbers: &[f64]| {
+        let mut bytes = b"\x93NUMPY".to_vec();
+        bytes.extend([version, 0]);
+        match version {
+            1 => bytes.extend((head.len() as u16).to_le_bytes()),
+            _ => bytes.extend((head.len() as u32).to_le_bytes()),
+        }
+        bytes.extend(head.as_bytes());
+        bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+        bytes
+    };
+    let head = "{'descr': '<f8', 'fortran_order': False, 'shape': (2,), }          \n";
+    for version in [1, 2] {
+        assert_eq!(pupil_timestamps::parse(&array(version, head, &[3.5, 4.0])), Ok(vec![3.5, 4.0]));
+    }
+    for (bytes, said) in [
+        (Vec::new(), "no array of numpy"),
+        (array(1, head, &[3.5, 4.0])[..40].to_vec(), "no array of numpy"),
+        (array(1, head, &[3.5]), "2 time stamps in 8 bytes"),
+        (array(1, head, &[3.5, f64::NAN]), "a time stamp that is no number"),
+        (array(1, &head.replace("<f8", "<i4"), &[3.5, 4.0]), "an array of the kind \"<i4\""),
+        (array(1, &head.replace("(2,)", "(1, 2)"), &[3.5, 4.0]), "another shape"),
+    ] {
+        let error = pupil_timestamps::parse(&bytes).expect_err(said);
+        assert!(error.contains(said), "{said}: {error}");
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    assert_eq!(pupil_timestamps::beside(&folder.path().join("world.mp4")), None);
+    let stamps = folder.path().join("world_timestamps.npy");
+    fs::write(&stamps, "text").expect("written");
+    assert_eq!(pupil_timestamps::beside(&folder.path().join("world.mp4")), Some(stamps.clone()));
+    let error = pupil_timestamps::read(&stamps).expect_err("no array").to_string();
+    assert!(error.contains("world_timestamps.npy") && error.contains("no array of numpy"), "{error}");
 }

@@ -51,6 +51,7 @@ fn input(reader: &str) -> Vec<u8> {
             R1,slip,,R2,belief,plate,3,slip,\nR1,race,,R2,race,,7,race,\n"
             .to_vec(),
         "video" => br#"{"films":[{"file":"room.mp4","sha256":"00","by":"flashes","offset_s":-3.5,"drift_ppm":20.0,"residual_ms":9.5,"flashes":5,"frame_ms":33.3,"length_s":60.0}]}"#.to_vec(),
+        "pupil_timestamps" => b"\x93NUMPY\x01\x00\x3a\x00{'descr': '<f8', 'fortran_order': False, 'shape': (1,), }\n12345678".to_vec(),
         "elan" => b"<ANNOTATION_DOCUMENT><HEADER><PROPERTY NAME=\"tomcom recording\">P07-1</PROPERTY></HEADER>\n\
             <TIME_SLOT TIME_SLOT_ID=\"a\" TIME_VALUE=\"1000\"/><TIME_SLOT TIME_SLOT_ID=\"b\" TIME_VALUE=\"1500\"/>\n\
             <TIER TIER_ID=\"errors\"><ALIGNABLE_ANNOTATION TIME_SLOT_REF1=\"a\" TIME_SLOT_REF2=\"b\">\

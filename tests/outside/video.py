@@ -1,5 +1,6 @@
 """Films of the participant's page beside a recording: a session in Chromium is filmed, and films are made from its pictures with other
-rates, codecs and mishaps; `tomcom video attach` must find where each begins, to one frame, or refuse it.
+rates, codecs and mishaps; `tomcom video attach` must find where each begins, to one frame, or refuse it. The session itself films
+the page, too, by a camera in the network, and attaches that film when it ends; a film in VP9 is converted.
 
     tests/outside/video.py TOMCOM FOLDER
 """
@@ -11,6 +12,9 @@ import json
 import re
 import subprocess
 import sys
+import threading
+import time
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
 import numpy as np
@@ -33,9 +37,44 @@ WebSocket.prototype.send = function (text) {
 """
 
 
+class NetworkCamera:
+    """A camera in the network that looks at the page: 30 pictures a second, each what the browser has drawn last."""
+
+    def __init__(self):
+        camera = self
+        picture = io.BytesIO()
+        Image.new("RGB", PAGE_SIZE).save(picture, "JPEG")
+        self.picture = picture.getvalue()
+        # How old pictures are when the camera gets them: the browser tells of them while it is listened to.
+        self.late_s = []
+
+        class Pictures(BaseHTTPRequestHandler):
+            def do_GET(self):
+                self.send_response(200)
+                self.send_header("Content-Type", "multipart/x-mixed-replace; boundary=picture")
+                self.end_headers()
+                try:
+                    while True:
+                        picture = camera.picture
+                        self.wfile.write(b"--picture\r\nContent-Type: image/jpeg\r\nContent-Length: %d\r\n\r\n%s\r\n" % (len(picture), picture))
+                        time.sleep(1 / 30)
+                except OSError:
+                    return
+
+            def log_message(self, *_):
+                return
+
+        self.server = ThreadingHTTPServer(("127.0.0.1", 0), Pictures)
+        threading.Thread(target=self.server.serve_forever, daemon=True).start()
+
+    def device(self):
+        return f"-f mpjpeg -i http://127.0.0.1:{self.server.server_address[1]}/"
+
+
 def record(tomcom, chromium, folder):
     """A short trial with signals: the recording, frames of the page with their times, and pictures of it dark and lit."""
-    session = session_file(folder, "sushi", 9707)
+    session, camera = session_file(folder, "sushi", 9707), NetworkCamera()
+    session.write_text(session.read_text() + f'[video]\ndevices = ["{camera.device()}"]\n')
     frames = []
     console = operate(tomcom, session, folder, "--condition", "wizard")
     with console:
@@ -43,7 +82,9 @@ def record(tomcom, chromium, folder):
         devtools = page.context.new_cdp_session(page.page)
 
         def frame(told):
-            frames.append((told["metadata"]["timestamp"], base64.b64decode(told["data"])))
+            camera.picture = base64.b64decode(told["data"])
+            camera.late_s.append(time.time() - told["metadata"]["timestamp"])
+            frames.append((told["metadata"]["timestamp"], camera.picture))
             devtools.send("Page.screencastFrameAck", {"sessionId": told["sessionId"]})
 
         def wait_for(words):
@@ -85,9 +126,11 @@ def record(tomcom, chromium, folder):
     drawn = [event for event in events if event["kind"] == "display" and event["what"] == "drawn"]
     cues = [event["seq"] for event in events if event["kind"] in ("trial_started", "signal_shown", "trial_ended")]
     assert [event["cue"] for event in drawn] == cues and len(cues) >= 5, (drawn, cues)
+    (filmed,) = [event for event in events if event["kind"] == "film"]
+    assert filmed["what"] == "began" and filmed["file"] == "film-1.mp4", filmed
     start_s = next(event["t_ns"] for event in events if event["kind"] == "trial_started") / 1e9
     frames.sort(key=lambda frame: frame[0])
-    return recording, [event["at_ns"] / 1e9 for event in drawn], drawn_at, frames, pictures, start_s
+    return recording, [event["at_ns"] / 1e9 for event in drawn], drawn_at, frames, pictures, start_s, (filmed["began_ns"] / 1e9, max(camera.late_s))
 
 
 def attach(tomcom, recording, *arguments):
@@ -172,7 +215,7 @@ def main():
     tomcom, folder = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
     folder.mkdir(parents=True, exist_ok=True)
     with browser() as chromium:
-        recording, drawn_s, drawn_at, frames, pictures, start_s = record(tomcom, chromium, folder)
+        recording, drawn_s, drawn_at, frames, pictures, start_s, (began_s, late_s) = record(tomcom, chromium, folder)
     log = (recording / "events.jsonl").read_bytes()
     length_s = drawn_s[-1] - drawn_s[0] + 8
 
@@ -190,6 +233,21 @@ def main():
     behind_s = float(np.median([at - frames[0][0] - drawn for at, drawn in zip(drawn_at, drawn_s)]))
     in_flash = [sum(drawn <= at <= drawn + FLASH_S for at, _ in frames) for drawn in drawn_at]
     is_quick = min(in_flash) >= 4
+
+    # The session's own film, which was attached when the program ended.
+    (own,) = json.loads((recording / "video.json").read_text())["films"]
+    assert own["file"] == "film-1.mp4" and own["sha256"] == hashlib.sha256((recording / "film-1.mp4").read_bytes()).hexdigest(), own
+    later_s = own["offset_s"] + began_s
+    assert abs(later_s) < 0.5 and own["length_s"] > drawn_s[-1] - began_s, (own, began_s)
+    # Where ffmpeg does not keep up with the pictures, they are old when it stamps them.
+    if is_quick and late_s < 0.1 and own["frame_ms"] <= 45:
+        assert own["by"] == "flashes", own
+    else:
+        print(f"the session's own film: this machine is too busy, pictures reach the camera up to {1000 * late_s:.0f} ms late, and "
+              f"ffmpeg takes one each {own['frame_ms']:.0f} ms", flush=True)
+    print(f"the session's own film, attached by {own['by']}: {own.get('flashes', 0)} of {len(drawn_s)} flashes, "
+          f"{1000 * later_s:.0f} ms later than by its times", flush=True)
+
     rates = {"chromium.mp4": (30, 1), "chromium-ntsc.mp4": (30000, 1001)} if is_quick else {}
     if not is_quick:
         print(f"Chromium's own frames: this machine is too busy, frames in each flash: {in_flash}", flush=True)
@@ -221,7 +279,7 @@ def main():
         rate = way.get("rate", (30, 1))
         frame_s = rate[1] / rate[0] if "variable" not in name else 1 / 30
         check(name, path, lambda drawn, way=way, offset_s=offset_s: offset_s + drawn * (1 + way.get("drift", 0.0)), frame_s)
-    assert len(json.loads((recording / "video.json").read_text())["films"]) == len(made) + len(rates), "each camera is kept"
+    assert len(json.loads((recording / "video.json").read_text())["films"]) == len(made) + len(rates) + 1, "each camera is kept"
     hidden = next(film for film in json.loads((recording / "video.json").read_text())["films"] if film["file"].endswith("/4.mp4"))
     assert hidden["flashes"] == len(drawn_s) - 1, hidden
     kept = (recording / "video.json").read_text()
@@ -241,6 +299,19 @@ def main():
         print(f"refused, {name}: {message[:240]}", flush=True)
     done = attach(tomcom, recording, recording / "events.jsonl")
     assert done.returncode == 2 and "ffmpeg cannot decode it" in done.stderr, done.stderr
+
+    # Converted, and found at the same place again.
+    vp9 = next(folder.glob("*.webm"))
+    done = attach(tomcom, recording, vp9, "--convert", "--format", "json")
+    assert done.returncode == 0, done.stderr
+    (copy,) = json.loads(done.stdout)["films"]
+    assert copy["file"] == f"{vp9.stem}-h264.mp4" and copy["copies_of"] == [str(vp9.resolve())], copy
+    again = attached(tomcom, recording, recording / copy["file"])
+    told_s = [[found["offset_s"] + drawn * (1 + found["drift_ppm"] / 1e6) for drawn in drawn_s] for found in (copy, again)]
+    off_s = max(abs(a - b) for a, b in zip(*told_s))
+    assert off_s < 0.01, (copy, again)
+    assert not any(film["file"] == str(vp9.resolve()) for film in json.loads((recording / "video.json").read_text())["films"])
+    print(f"VP9 as H.264: {1000 * off_s:.1f} ms off the film", flush=True)
 
     # By hand, and copied.
     dark = folder / "no-flash.mp4"

@@ -7,7 +7,7 @@ use super::paint::Painter;
 use super::regions::{PanelAreas, ROOMY_COLUMNS};
 use super::side_panels::SLOW;
 use super::theme::TextRole;
-use crate::console::console_model::{ConsoleModel, RecordingStatus, RerunStreamStatus};
+use crate::console::console_model::{ConsoleModel, FilmStatus, RecordingStatus, RerunStreamStatus};
 use crate::console::probe_keys;
 use crate::console::text_columns::width;
 use tomcom_core::base::time::SessionTime;
@@ -189,6 +189,7 @@ pub(super) fn healths(session: &Session, model: &ConsoleModel) -> Vec<(String, T
     if let Some((text, is_fine)) = model.display.as_ref().map(|display| display.line()) {
         healths.push((text, if is_fine { TextRole::Text } else { TextRole::Alarm }));
     }
+    healths.extend(model.films.as_ref().map(films));
     if let Some(RerunStreamStatus { dropped: dropped @ 1.., .. }) = &model.viewers {
         healths.push((format!("RERUN {dropped} ROWS DROPPED"), TextRole::Alarm));
     }
@@ -207,6 +208,18 @@ fn robot(session: &Session) -> (String, TextRole) {
         (false, false) => ("robot ok", TextRole::Text),
     };
     (words.to_string(), role)
+}
+
+/// State of the cameras in words.
+fn films(status: &FilmStatus) -> (String, TextRole) {
+    let FilmStatus { cameras, filming, lost, is_on, .. } = status;
+    match (is_on, lost) {
+        (false, _) => ("film idle".to_string(), TextRole::Quiet),
+        (true, 0) if filming < cameras => ("film opens".to_string(), TextRole::Quiet),
+        (true, 0) => ("film ok".to_string(), TextRole::Text),
+        (true, _) if *cameras == 1 => ("NO FILM".to_string(), TextRole::Alarm),
+        (true, lost) => (format!("NO FILM {lost} OF {cameras}"), TextRole::Alarm),
+    }
 }
 
 /// Address for Rerun viewers, while no row of the stream has been dropped.

@@ -1,7 +1,7 @@
-//! An external mind as a child process, in a process group of its own, which ends with the session.
+//! An external mind as a child process, which ends with the session.
 
 use std::io::{BufRead, BufReader, Read};
-use std::process::{Child, ChildStderr, Command, Stdio};
+use std::process::{ChildStderr, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
@@ -10,6 +10,7 @@ use std::time::Duration;
 use tomcom_session::external::{MindConnection, MindWriter};
 
 use super::lines::{LineReceiver, LineSender};
+use crate::child_process::ChildProcess;
 
 /// Time in which a child ends by itself after it was told that the trial is over.
 const ENDS_WITHIN: Duration = Duration::from_secs(1);
@@ -23,7 +24,8 @@ const LONGEST_WORDS: u64 = 2048;
 #[derive(Debug)]
 struct ChildWriter {
     lines: LineSender,
-    child: Arc<Mutex<Child>>,
+    /// The child ends with the writer: why it ended is looked up only while it is there.
+    child: Arc<Mutex<Option<ChildProcess>>>,
 }
 
 impl MindWriter for ChildWriter {
@@ -35,11 +37,10 @@ impl MindWriter for ChildWriter {
 impl Drop for ChildWriter {
     fn drop(&mut self) {
         self.lines.close();
-        let mut child = self.child.lock().unwrap_or_else(PoisonError::into_inner);
-        wait_for_end(&child, ENDS_WITHIN);
-        // Also what the child started, and before the child is forgotten: its number can then be another's.
-        kill_group(&mut child);
-        let _ = child.wait();
+        let child = self.child.lock().unwrap_or_else(PoisonError::into_inner).take();
+        if let Some(mut child) = child {
+            child.ends_within(ENDS_WITHIN);
+        }
     }
 }
 
@@ -48,14 +49,13 @@ pub(super) fn start(command: &str) -> Result<MindConnection, String> {
     shell.args(["-c", command]).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     // Python would keep its lines back until it has many of them.
     shell.env("PYTHONUNBUFFERED", "1");
-    #[cfg(unix)]
-    std::os::unix::process::CommandExt::process_group(&mut shell, 0);
-    let mut child = shell.spawn().map_err(|error| format!("sh -c '{command}': {error}"))?;
+    let mut process = ChildProcess::start(&mut shell).map_err(|error| format!("sh -c '{command}': {error}"))?;
+    let child = process.child();
     let (Some(stdin), Some(stdout), Some(stderr)) = (child.stdin.take(), child.stdout.take(), child.stderr.take())
     else {
         return Err("it has no pipes".to_string());
     };
-    let child = Arc::new(Mutex::new(child));
+    let child = Arc::new(Mutex::new(Some(process)));
     let words = last_words(stderr);
     let ended = child.clone();
     let why = move || explained(&ended, &words);
@@ -87,18 +87,20 @@ fn last_words(stderr: ChildStderr) -> Receiver<String> {
 }
 
 /// Why a child that closed its output has ended: its exit code, and the last line of its error output.
-fn explained(child: &Mutex<Child>, words: &Receiver<String>) -> String {
+fn explained(child: &Mutex<Option<ChildProcess>>, words: &Receiver<String>) -> String {
     let mut waited = Duration::ZERO;
-    let code = loop {
+    let status = loop {
         // The lock is not held for long: whoever ends the session needs it.
-        let code = exit_code(&child.lock().unwrap_or_else(PoisonError::into_inner));
-        if code.is_some() || waited >= EXPLAINED_WITHIN {
-            break code;
+        let mut child = child.lock().unwrap_or_else(PoisonError::into_inner);
+        let status = child.as_mut().and_then(|child| child.child().try_wait().ok()).flatten();
+        if status.is_some() || child.is_none() || waited >= EXPLAINED_WITHIN {
+            break status;
         }
+        drop(child);
         thread::sleep(STEP);
         waited += STEP;
     };
-    let how = match code {
+    let how = match status.map(|status| status.code()) {
         Some(Some(code)) => format!("exit code {code}"),
         Some(None) => "it was killed".to_string(),
         None => "it closed its output".to_string(),
@@ -107,41 +109,4 @@ fn explained(child: &Mutex<Child>, words: &Receiver<String>) -> String {
         Ok(last) if !last.is_empty() => format!("{how}: {last}"),
         _ => how,
     }
-}
-
-fn wait_for_end(child: &Child, longest: Duration) {
-    let mut waited = Duration::ZERO;
-    while exit_code(child).is_none() && waited < longest {
-        thread::sleep(STEP);
-        waited += STEP;
-    }
-}
-
-/// The exit code of a child that has ended, or `Some(None)` if it was killed. The child's number stays its own.
-#[cfg(unix)]
-fn exit_code(child: &Child) -> Option<Option<i32>> {
-    use rustix::process::{Pid, WaitId, WaitIdOptions, waitid};
-    let pid = Pid::from_child(child);
-    let options = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
-    match waitid(WaitId::Pid(pid), options) {
-        Ok(None) => None,
-        Ok(Some(status)) => Some(status.exit_status()),
-        Err(_) => Some(None),
-    }
-}
-
-#[cfg(unix)]
-fn kill_group(child: &mut Child) {
-    use rustix::process::{Pid, Signal, kill_process_group};
-    let _ = kill_process_group(Pid::from_child(child), Signal::KILL);
-}
-
-#[cfg(not(unix))]
-fn exit_code(_: &Child) -> Option<Option<i32>> {
-    None
-}
-
-#[cfg(not(unix))]
-fn kill_group(child: &mut Child) {
-    let _ = child.kill();
 }

@@ -11,6 +11,7 @@ use tomcom_session::event::{Event, TimestampedEvent};
 use tomcom_session::features::Feature;
 use tomcom_session::files::file_error::FileResult;
 use tomcom_session::files::{WallTime, overwrite};
+use tomcom_session::film::FilmEvent;
 use tomcom_session::log::{LOG_NAME, LogReader};
 use tomcom_session::preflight_checks::PreflightVerdict;
 use tomcom_session::tracker::TrackerEvent;
@@ -139,10 +140,12 @@ fn warning(stamped: &TimestampedEvent) -> Option<String> {
             | TrackerEvent::Connected { .. }
             | TrackerEvent::DisplayFound,
         )
-        | Event::Display(DisplayEvent::Connected { .. } | DisplayEvent::Drawn { .. }) => None,
+        | Event::Display(DisplayEvent::Connected { .. } | DisplayEvent::Drawn { .. })
+        | Event::Film(FilmEvent::Began { .. }) => None,
         Event::TrialAborted { .. } => Some(format!("{at} trial_aborted")),
         event @ (Event::Tracker(_)
         | Event::Display(_)
+        | Event::Film(_)
         | Event::ClockJumped { .. }
         | Event::FocusLost
         | Event::RobotSafety { .. }

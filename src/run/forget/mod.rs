@@ -22,9 +22,10 @@ use tomcom_devices::stream_head;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::files::replace_file::replaced_name;
 use tomcom_session::files::rescue::{RESCUE_NOTE_NAME, RESCUED, RescueNote};
+use tomcom_session::film::is_recorded_film;
 use tomcom_session::log::consensus_file::CONSENSUS_NAME;
 use tomcom_session::log::rater_codes::is_codes_file;
-use tomcom_session::log::video_file::{self, VIDEO_NAME};
+use tomcom_session::log::video_file::{self, AttachedFilm, VIDEO_NAME};
 use tomcom_session::log::{
     ANNOTATION_NAMES, CODES_LOCK, CORRECTION_NAME, EXCLUSION_NAME, LOCK_NAME, LOG_NAME, MCAP_NAME, RRD_NAME,
     SETTINGS_NAME, is_damaged_log,
@@ -208,16 +209,17 @@ impl ForgetSearch {
                 return BTreeSet::new();
             }
         };
-        let (inside, outside): (Vec<_>, Vec<_>) = films.into_iter().partition(|film| film.is_inside());
-        for film in outside {
-            let gone = if film.file.exists() { "" } else { " (there is no such file there now)" };
+        let files = films.iter().flat_map(AttachedFilm::files);
+        let (inside, outside): (Vec<_>, Vec<_>) = files.partition(|file| video_file::is_name(file));
+        for file in outside {
+            let gone = if file.exists() { "" } else { " (there is no such file there now)" };
             let reason = format!(
                 "a film of the participant's recording {}, outside of its folder{gone}; it is to be deleted by hand",
                 file_name(folder)
             );
-            self.leave(&film.file, reason);
+            self.leave(file, reason);
         }
-        inside.iter().map(|film| file_name(&film.file)).collect()
+        inside.iter().map(|file| file_name(file)).collect()
     }
 
     /// Looks for recordings that were rescued from a folder below the folder `home`, and for Rerun streams of recordings
@@ -378,6 +380,7 @@ fn is_of_recording(path: &Path) -> bool {
     let seal = name.strip_suffix(".toml").unwrap_or_default();
     is_codes_file(name)
         || is_damaged_log(name)
+        || is_recorded_film(name)
         || NAMES.contains(&name)
         || ANNOTATION_NAMES.contains(&name)
         || seal == RRD_NAME

@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use super::capture_orders::CaptureRequestSender;
 use super::display::ParticipantDisplay;
+use super::filming::Filming;
 use super::gaze_events::GazeInput;
 use super::lsl_streaming::LslStreaming;
 use super::viewing::StreamedSession;
@@ -73,6 +74,7 @@ pub(super) struct Live {
     pub(super) clock: SessionClock,
     pub(super) gaze: GazeInput,
     pub(super) capture: CaptureRequestSender,
+    pub(super) filming: Filming,
     /// Sequence number of a signal that no frame on the wizard's screen has shown yet.
     pub(super) undrawn: Option<u64>,
     /// Last recorded content of the wizard's screen.
@@ -100,7 +102,12 @@ pub(in crate::run) async fn run(
     let leaving = left.as_ref().ok().copied().flatten().unwrap_or(LeavingReason::Quit);
     let told = if leaving == LeavingReason::Quit { Ok(()) } else { live.tell_next(station) };
     station.tracker.keep(live.engine.session().calibrated.clone());
+    let films = live.filming.leave();
+    let folder = live.log.folder().to_path_buf();
     let end = live.close(leaving);
+    if let Some(films) = films {
+        station.films.close(films, folder);
+    }
     station.tracker.finish_requests().await;
     left.and(told).and(end)
 }
@@ -218,6 +225,7 @@ impl Live {
             clock,
             gaze: GazeInput::default(),
             capture: CaptureRequestSender::default(),
+            filming: Filming::default(),
             undrawn: None,
             seen: None,
             judged: 0,
@@ -227,6 +235,7 @@ impl Live {
         live.model.free_bytes = free_bytes(live.log.folder()).ok();
         live.begin_viewing(is_new, first.last().map_or(0, |last| last.seq + 1));
         live.begin_lsl(station);
+        live.begin_filming();
         live.record(&first);
         live.tick();
         if let Some(request) = compare {
@@ -264,6 +273,14 @@ impl Live {
             Err(reason) => self.model.say(NoticeLevel::Alarm, format!("the session goes on without LSL: {reason}")),
         }
         self.model.lsl = self.lsl.as_ref().map(LslStreaming::status);
+    }
+
+    /// Prepares the films of the trial, and films a trial that goes on after a cut.
+    fn begin_filming(&mut self) {
+        let (filming, lost) = Filming::at(self.engine.session(), self.log.folder());
+        self.filming = filming;
+        self.model.films = self.filming.status();
+        self.record_films(lost);
     }
 
     /// Records the tracker's state at the beginning of a recording.

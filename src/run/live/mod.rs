@@ -11,6 +11,7 @@ pub mod display;
 #[cfg(not(feature = "display"))]
 #[path = "without_display.rs"]
 mod display;
+mod filming;
 mod gaze_events;
 mod inputs;
 mod live_session;

@@ -6,6 +6,7 @@ use super::viewing::StreamedSession;
 use crate::console::console_model::NoticeLevel;
 use crate::console::console_model::RecordingStatus;
 use crate::run::doctor::free_bytes;
+use tomcom_session::film::FilmEvent;
 use tomcom_session::history::belief_track::{self, BeliefSnapshot};
 use tomcom_session::history::error_reasons::ExplainedError;
 use tomcom_session::history::event_words;
@@ -19,6 +20,7 @@ impl Live {
     /// Writes events to the log. If writing fails, the session ends, since it would have no data.
     pub(super) fn record(&mut self, events: &[TimestampedEvent]) {
         self.dirty = true;
+        let mut lost = Vec::new();
         for stamped in events {
             match stamped.event {
                 Event::Gaze(sample) => self.model.see(stamped.time, self.engine.session().corrected(sample)),
@@ -38,6 +40,7 @@ impl Live {
                 _ => {}
             }
             self.capture.tell(&stamped.event, self.clock.instant_of(stamped.time));
+            lost.extend(self.filming.tell(&stamped.event));
             if let Some(comparison) = &self.comparison {
                 comparison.tell(stamped);
             }
@@ -72,7 +75,19 @@ impl Live {
             viewing.view(events, &self.engine);
         }
         told.into_iter().for_each(|event| self.input(event));
+        self.record_films(lost);
         self.ask_participant();
+    }
+
+    /// Records what happened to films; the wizard is warned of lost ones.
+    pub(super) fn record_films(&mut self, news: Vec<FilmEvent>) {
+        for event in news {
+            if matches!(event, FilmEvent::Lost { .. }) {
+                self.model.warn(event.words());
+                self.ring(BellOccasion::Film);
+            }
+            self.input(Event::Film(event));
+        }
     }
 
     /// Has the terminal ring with the next frame, if the session asks for that.
@@ -133,6 +148,11 @@ impl Live {
         self.examine_display();
         self.pause_without_page();
         self.watch_for_bell();
+        let films = self.filming.news(self.clock.now());
+        if self.engine.session().phase != TrialPhase::Closed {
+            self.record_films(films);
+        }
+        self.model.films = self.filming.status();
         if let Some(by_ms) = self.clock.jump() {
             self.input(Event::ClockJumped { by_ms });
             let ahead_s = by_ms as f64 / 1000.0;
@@ -151,6 +171,7 @@ impl Live {
         }
         if self.engine.session().phase == TrialPhase::Ready {
             self.model.free_bytes = free_bytes(self.log.folder()).ok();
+            self.filming.examine();
         }
         self.check_log(false);
     }

@@ -22,6 +22,10 @@ const REMEDY: &str = "the file as tomcom video attach writes it; without it, att
 pub enum FilmAlignmentSource {
     /// By the flashes of the participant's page.
     Flashes,
+    /// By the times at which the cameras took their pictures, since the program recorded the film.
+    Recorded,
+    /// By the clock of Pupil Capture, which recorded film and gaze.
+    PupilClock,
     /// Somebody gave the offset.
     Offset,
     /// Somebody gave the time in the film at which the trial starts.
@@ -41,7 +45,8 @@ pub struct AttachedFilm {
     pub offset_s: f64,
     /// How much faster the film's clock goes than session time.
     pub drift_ppm: f64,
-    /// Largest distance of a flash in the film from where the alignment puts it; absent without flashes.
+    /// Largest distance of a flash in the film from where the alignment puts it; of Pupil's clock, what 99 % of gaze samples
+    /// are within.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub residual_ms: Option<f64>,
     /// Number of flashes that the alignment stands on; absent without flashes.
@@ -53,6 +58,9 @@ pub struct AttachedFilm {
     /// Absent where the film was not decoded.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub length_s: Option<f64>,
+    /// Where the films are from which this one was copied or converted; as [`AttachedFilm::file`].
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub copies_of: Vec<PathText>,
 }
 
 impl AttachedFilm {
@@ -71,14 +79,14 @@ impl AttachedFilm {
         folder.join(&self.file)
     }
 
-    /// Whether the film lies in the recording's folder.
-    pub fn is_inside(&self) -> bool {
-        is_name(&self.file)
+    /// The film, and those that it is a copy of.
+    pub fn files(&self) -> impl Iterator<Item = &PathText> {
+        std::iter::once(&self.file).chain(&self.copies_of)
     }
 }
 
-/// Whether a path is the name of a file alone.
-fn is_name(path: &Path) -> bool {
+/// Whether a path is the name of a file alone, so that it lies in the recording's folder.
+pub fn is_name(path: &Path) -> bool {
     path.file_name().is_some_and(|name| path.as_os_str() == name)
 }
 
@@ -113,7 +121,8 @@ pub fn read(folder: &Path) -> FileResult<RecordingFilms> {
         FileError::at(&path, &text, Some(place..place), error.to_string(), REMEDY.to_string())
     })?;
     let is_fit = |film: &AttachedFilm| {
-        film.offset_s.is_finite() && film.drift_ppm.is_finite() && (film.is_inside() || film.file.is_absolute())
+        let is_place = |file: &PathText| is_name(file) || file.is_absolute();
+        film.offset_s.is_finite() && film.drift_ppm.is_finite() && film.files().all(is_place)
     };
     match films.films.iter().find(|film| !is_fit(film)) {
         None => Ok(films),

@@ -211,7 +211,7 @@ fn set_arm(spec: &mut SessionSpec, arm: StudyArm) {
 /// recording and which device its gaze comes from are no part of the plan either: both are chosen at the start of a
 /// recording and written to its header. The model's parameters are in `human`, and the layout's text stands beside the
 /// settings.
-const CANNOT_CHANGE_A_TRIAL: [&str; 26] = [
+const CANNOT_CHANGE_A_TRIAL: [&str; 27] = [
     "layout",
     "human_model",
     "participant.code",
@@ -238,6 +238,7 @@ const CANNOT_CHANGE_A_TRIAL: [&str; 26] = [
     "display.listen",
     "display.port",
     "rerun",
+    "video",
 ];
 /// The settings that can change a trial, by their path. A switch that is off, as by default, is left out: a new one
 /// leaves the digests of all plans as they are.

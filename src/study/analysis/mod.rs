@@ -4,6 +4,7 @@
 pub mod annotations;
 pub mod bids;
 pub mod comparison_summary;
+pub mod film_clock;
 pub mod film_flashes;
 pub mod fitting;
 #[cfg(feature = "mcap")]

@@ -4,6 +4,7 @@ pub mod annotation_files;
 pub mod bids_tree;
 pub mod export;
 pub mod pool_file;
+pub mod pupil_timestamps;
 pub mod recordings;
 pub mod simulated_trials;
 pub mod study_part_file;

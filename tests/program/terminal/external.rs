@@ -77,3 +77,21 @@ fn programs_that_crash_flood_and_hang_leave_the_session_running() {
         terminal.verifies();
     }
 }
+
+#[test]
+fn a_killed_session_leaves_no_program_behind_that_ignores_the_end_of_its_input() {
+    let terminal = Terminal::open("external-killed");
+    let pid = terminal.recordings() + "/pid";
+    fs::create_dir_all(terminal.recordings()).expect("a folder");
+    // Neither the end of its input nor a request to end stops it.
+    let stubborn =
+        format!("trap '' TERM HUP; {}; sleep 1000 & sleep 1000", ANSWERS.replace("> pid", &format!("> '{pid}'")));
+    terminal.operate("default.toml", &["--condition", "wizard", "--concept", &stubborn]);
+    terminal.see("external concept began: mine");
+    terminal.kill();
+    let pid = fs::read_to_string(pid).expect("the program ran");
+    terminal.wait("the program's end", || {
+        let stat = fs::read_to_string(format!("/proc/{}/stat", pid.trim())).unwrap_or_default();
+        stat.is_empty() || stat.contains(") Z ")
+    });
+}

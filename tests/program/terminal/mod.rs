@@ -2,6 +2,7 @@
 
 mod by_hand;
 mod external;
+mod films;
 mod leaving;
 mod observers;
 mod watching;

@@ -11,6 +11,7 @@ use tomcom_core::communication::offer::OfferedCommunication;
 use tomcom_core::gaze::device_clock::StampFault;
 use tomcom_session::event::{Event, MEANINGS};
 use tomcom_session::external::ExternalEvent;
+use tomcom_session::film::FilmEvent;
 use tomcom_session::gaze_check::GazeCheckEvent;
 use tomcom_session::probes::{ProbeEvent, ProbeSubject};
 use tomcom_session::protocol::ProtocolEvent;
@@ -165,6 +166,7 @@ impl EventCells {
             Event::HumanWaits { silent_ns } => {
                 (self.agent, self.value) = ("human".to_string(), Some(silent_ns.as_secs_f64()));
             }
+            Event::Film(event) => self.take_film(event),
             Event::ClockJumped { by_ms } => self.value = Some(*by_ms as f64),
             Event::Screen(screen) => {
                 self.what = name(&screen.visibility);
@@ -339,6 +341,22 @@ impl EventCells {
             }
             TrackerEvent::DisplayFound | TrackerEvent::DisplayLost => {}
         }
+    }
+
+    fn take_film(&mut self, event: &FilmEvent) {
+        self.what = tag(event, "what");
+        let camera = match event {
+            FilmEvent::Began { camera, file, began_ns } => {
+                (self.item, self.at) = (file.clone(), Some(*began_ns));
+                camera
+            }
+            FilmEvent::Lost { camera, reason } => {
+                self.words = reason.clone();
+                camera
+            }
+            FilmEvent::Back { camera } => camera,
+        };
+        self.value = Some(f64::from(*camera));
     }
 
     fn take_calibration(&mut self, event: &GazeCheckEvent) {

@@ -38,7 +38,7 @@ const RECORDING: &str = include_str!("../../../golden/format-3-hand.jsonl");
 pub type Reader = fn(&[u8]);
 
 /// The readers with the names that `tests/fuzz/run` takes.
-pub const READERS: [(&str, Reader); 24] = [
+pub const READERS: [(&str, Reader); 25] = [
     ("layout", layout),
     ("recipes", recipes),
     ("session", session),
@@ -52,6 +52,7 @@ pub const READERS: [(&str, Reader); 24] = [
     ("rater_codes", codes),
     ("consensus", consensus),
     ("video", video),
+    ("pupil_timestamps", pupil_timestamps),
     ("elan", elan),
     ("boris", boris),
     ("training", trained),
@@ -142,6 +143,11 @@ fn codes(bytes: &[u8]) {
 fn video(bytes: &[u8]) {
     file(video_file::VIDEO_NAME, bytes);
     shown(video_file::read(&folder()).map(|films| films.films.len()));
+}
+
+/// The times of the pictures of a film of Pupil Capture.
+fn pupil_timestamps(bytes: &[u8]) {
+    let _ = tomcom_study::files::pupil_timestamps::parse(bytes);
 }
 
 fn elan(bytes: &[u8]) {

@@ -127,7 +127,7 @@ pub fn describe(figures: &StudyProgress) -> String {
     );
     let one = |progress: &ParticipantProgress| {
         let trials = progress.steps.iter().filter(|stand| stand.slot.period.is_some());
-        let order: Vec<&str> = trials.map(|stand| stand.slot.condition.name()).collect();
+        let order: Vec<&str> = trials.map(|stand| stand.slot.condition.title()).collect();
         let width = figures.participants.iter().map(|one| one.code.len()).max().unwrap_or(0);
         let stands = stands(progress);
         let stands = stands.split_once(": ").map_or(stands.as_str(), |(_, stands)| stands);
@@ -155,18 +155,21 @@ fn attempts(progress: &ParticipantProgress) -> String {
                 complete.join(" and in ")
             );
         }
-        for attempt in &stand.recordings {
+        for (index, attempt) in stand.recordings.iter().enumerate() {
+            let open = if index + 1 < stand.recordings.len() { "not finished, repeated" } else { "open" };
             let version = if attempt.other_version { ", recorded under another version of the plan" } else { "" };
-            let arm = attempt.other_arm.map_or(String::new(), |arm| format!(", in the condition {}", arm.name()));
+            let arm = attempt.other_arm.map_or(String::new(), |arm| format!(", in the condition {}", arm.title()));
             let recorded = attempt.recorded_as.as_ref();
             let corrected = recorded.map_or(String::new(), |code| format!(", recorded as {code}{arm}"));
-            let how = match &attempt.outcome {
-                RecordingOutcome::Complete if attempt.other_version || recorded.is_some() => "done",
-                RecordingOutcome::Complete => continue,
-                RecordingOutcome::Open => "open",
-                RecordingOutcome::Running => "being recorded",
-                RecordingOutcome::Excluded { reason } => &format!("excluded ({reason})"),
-                RecordingOutcome::Void { reason } => reason,
+            let how = match (&attempt.outcome, &attempt.waived, &attempt.excluded) {
+                (RecordingOutcome::Complete, Some(reason), _) => &format!("criterion not met, waived ({reason})"),
+                (RecordingOutcome::Complete, None, _) if attempt.other_version || recorded.is_some() => "done",
+                (RecordingOutcome::Complete, None, _) => continue,
+                (RecordingOutcome::Open, _, Some(reason)) => &format!("{open}, excluded ({reason})"),
+                (RecordingOutcome::Open, _, None) => open,
+                (RecordingOutcome::Running, ..) => "being recorded",
+                (RecordingOutcome::Excluded { reason }, ..) => &format!("excluded ({reason})"),
+                (RecordingOutcome::Void { reason }, ..) => reason,
             };
             lines +=
                 &format!("      {} in {}: {how}{version}{corrected}\n", slot_name(progress, slot), attempt.recording);

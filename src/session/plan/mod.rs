@@ -12,7 +12,7 @@ mod study;
 
 use crate::person_code;
 pub use crate::plan::study::{
-    NextRecording, ParticipantProgress, PlanRecording, PlannedTrial, PlannedTrialProgress, RecordingOutcome, Study,
+    NextRecording, ParticipantProgress, PhaseStand, PlanRecording, PlannedTrial, PlannedTrialProgress, RecordingOutcome, Study,
     TrialAttempt, WantedRecording,
 };
 use crate::protocol::StudyPhase;

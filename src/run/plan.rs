@@ -11,7 +11,8 @@ use tomcom_core::base::text::PathText;
 use tomcom_core::base::text::count;
 use tomcom_session::files::KitchenWithSources;
 use tomcom_session::files::file_error::FileResult;
-use tomcom_session::plan::{ParticipantProgress, RecordingOutcome, Study, TrialAttempt};
+use tomcom_session::plan::{ParticipantProgress, RecordingOutcome, Study, TrialAttempt, orders};
+use tomcom_session::study_arm::StudyArm;
 use tomcom_study::files::pool_file;
 use tomcom_study::frozen_plan::FrozenPlan;
 
@@ -138,7 +139,30 @@ pub fn describe(figures: &StudyProgress) -> String {
         0 => String::new(),
         all => format!("not counted: {} of the plan\n", count(all, "simulated recording", "simulated recordings")),
     };
+    let head = head + &unbalanced(figures);
     head + &figures.participants.iter().map(one).collect::<String>() + &simulated
+}
+
+/// Remark on a number of participants with whom the orders of the conditions do not come equally often.
+fn unbalanced(figures: &StudyProgress) -> String {
+    let Some(first) = figures.participants.first() else { return String::new() };
+    let trials = |one: &ParticipantProgress| -> Vec<StudyArm> {
+        one.steps.iter().filter(|stand| stand.slot.period.is_some()).map(|stand| stand.slot.condition).collect()
+    };
+    let conditions = trials(first);
+    let (orders, planned) = (orders(conditions.len()).len(), figures.planned);
+    if planned % orders == 0 {
+        return String::new();
+    }
+    let firsts: Vec<StudyArm> = figures.participants.iter().filter_map(|one| trials(one).first().copied()).collect();
+    let mut arms = conditions;
+    arms.sort_unstable();
+    let times = |arm: &StudyArm| format!("{} {}", arm.title(), firsts.iter().filter(|first| *first == arm).count());
+    let times = arms.iter().map(times).collect::<Vec<_>>().join(", ");
+    format!(
+        "not balanced: {} with {orders} orders of the conditions (first comes: {times}); a multiple of {orders} participants is\n",
+        count(planned as u64, "participant", "participants"),
+    )
 }
 
 /// Remarks on a participant's recordings: invalid recordings, and recordings made with another version of the plan.

@@ -300,11 +300,11 @@ fn consent(study: &Study, progress: &ParticipantProgress, label: &str, on_displa
     StartPrompt::new(format!("{}: {label}", progress.code), text, vec![yes.to_string(), no.to_string()])
 }
 
-/// Name of a planned trial: "familiarisation", "trial 1".
+/// Name of a planned trial: "practice", "trial 1".
 pub(super) fn slot_name(progress: &ParticipantProgress, slot: usize) -> String {
     match progress.steps.get(slot).and_then(|stand| stand.slot.period) {
         Some(period) => format!("trial {period}"),
-        None => "familiarisation".to_string(),
+        None => "practice".to_string(),
     }
 }
 

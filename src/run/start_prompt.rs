@@ -38,7 +38,8 @@ pub(super) async fn ask_consent(
 ) -> Result<Option<(usize, AnswerDevice)>, LiveError> {
     let (theme, asked, button) = (station.theme, Instant::now(), ConsentHold::default());
     let missing_page = station.display.missing_page();
-    let mut shell = OpenQuestion { question, on_display, missing_page, asked, button, theme, notice: None, dirty: true };
+    let mut shell =
+        OpenQuestion { question, on_display, missing_page, asked, button, theme, notice: None, dirty: true };
     let reply = event_loop::run(&mut shell, station).await?;
     Ok(match reply {
         Some((StartReply::Answer(index), on)) => Some((index, on)),

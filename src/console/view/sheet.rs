@@ -25,6 +25,7 @@ use tomcom_session::probes::{ProbeAnswer, ProbeQuestion, StartedProbe};
 use tomcom_session::protocol::{ItemAnswer, StudyProtocolState};
 use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::settings::WizardVisibility;
+use tomcom_session::wall_display::AnswerDevice;
 use tomcom_session::{Session, TrialPhase};
 
 /// Draws the sheet of the session's present phase, if that phase has one.
@@ -125,7 +126,7 @@ fn draw_tutorial(
     }
     let on = onward(session, model);
     let over = [("enter", on.as_str(), plain(KeyCode::Enter))];
-    let skip = ("0", "ends the tutorial", Some(KeyChord::char('0')));
+    let skip = ("0", "end the tutorial", Some(KeyChord::char('0')));
     let (back, next) =
         (("\u{2190}", "previous page", plain(KeyCode::Left)), ("\u{2192}", "next page", plain(KeyCode::Right)));
     let title = "Tutorial of the participant";
@@ -145,6 +146,9 @@ fn draw_questions(
     let mut page = Page::of_session(screen, session, model);
     if let Some(item) = questionnaire.items.get(protocol.item) {
         page.text(0, &format!("item {} of {items}", protocol.item + 1), TextRole::Quiet);
+        if is_wanted(session) && session.spec.display.questionnaire == AnswerDevice::Display {
+            page.text(0, "The participant answers on the page. The keys answer here in their place.", TextRole::Quiet);
+        }
         page.space();
         page.text(0, &item.text, TextRole::Strong);
         page.space();

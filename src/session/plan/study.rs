@@ -7,7 +7,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use crate::SessionSpec;
-use crate::plan::{PhaseSpec, PlanPosition, PlanSpec, PracticeCriterion, StartingGroup};
+use crate::plan::{PhaseSpec, PlanPosition, PlanSpec, PracticeCriterion, StartingGroup, TUTORIAL_ALONE};
 use crate::protocol::ProtocolEvent;
 use crate::questionnaire::Questionnaire;
 use crate::settings::{GazeSource, ParticipantKind, WizardVisibility};
@@ -150,7 +150,7 @@ impl Study {
         let mut spec = self.session.clone();
         spec.participant.code = code.to_string();
         spec.step = Some(PlanPosition {
-            plan: format!("{}-tutorial", self.plan.name),
+            plan: format!("{}{TUTORIAL_ALONE}", self.plan.name),
             digest: self.digest.clone(),
             participant: 0,
             group: String::new(),

@@ -331,7 +331,9 @@ impl Part {
         let confirmed = confirmed(parts);
         let phases = self.step.phases.iter().zip(1..).take_while(|(phase, _)| **phase != PhaseSpec::Trial);
         let answered = phases.filter_map(|(phase, number)| match phase {
-            PhaseSpec::Questionnaire { questionnaire } if confirmed.contains(&number) => Some(questionnaire.name.clone()),
+            PhaseSpec::Questionnaire { questionnaire } if confirmed.contains(&number) => {
+                Some(questionnaire.name.clone())
+            }
             _ => None,
         });
         answered.collect()

@@ -9,6 +9,7 @@ use crate::arm_comparison::{
 use crate::charts;
 use crate::effect::{AssistanceEffect, LeftOutParticipant, left_out_in_words};
 use crate::figures::StudySummary;
+use crate::headline::fewer;
 use crate::report::elements::{
     Captions, PageColumn, UNKNOWN, cells, keys, nothing, number, p_sentence, p_value, percent, range, scroll, section,
     with_interval,
@@ -92,14 +93,15 @@ fn in_words(effect: &AssistanceEffect) -> Markup {
     let (Some(reduction), Some(test)) = (effect.reduction, effect.assistance()) else { return nothing() };
     let [estimate, low, high] = [reduction.estimate, reduction.low, reduction.high].map(|value| 100.0 * value);
     let interval = match low.is_finite() && high.is_finite() {
-        true => format!(", interval of {:.1} %: {}", 100.0 * reduction.level, range([low, high], 1)),
+        true => format!(", interval of {:.1} %: {} fewer", 100.0 * reduction.level, range([low, high], 1)),
         false => "; too few participants for an interval".to_string(),
     };
+    let shown = if low < 0.0 && high > 0.0 { ": no difference shown" } else { "" };
     let degrees = format!("{:.0},\u{a0}{:.0}", test.df[0], test.df[1]);
     html! {
         p {
-            "In " (test.n) " participants, assistance reduces errors by " (number(Some(estimate), 1)) " per 100 presses of the human (Hodges-Lehmann"
-            (interval) "). Interaction of period and starting group: F(" (degrees) ")\u{a0}=\u{a0}"
+            "The paper\u{2019}s analysis, secondary: in " (test.n) " participants " (fewer(estimate))
+            " errors per 100 presses of the human with assistance (Hodges-Lehmann" (interval) ")" (shown) ". Interaction of period and starting group: F(" (degrees) ")\u{a0}=\u{a0}"
             (number(Some(test.f), 2)) ", " (p_sentence(Some(test.p))) "."
         }
         "\n"

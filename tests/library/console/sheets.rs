@@ -45,7 +45,7 @@ fn the_sheets_around_a_trial_fit_every_size() {
         let mut stage = planned(0, false);
         stage.model.size = size;
         let screen = stage.screen(size);
-        for text in ["INSTRUCTION", "P01 familiarisation", "Ask for questions.", "tick this step as done"] {
+        for text in ["INSTRUCTION", "P01 practice", "Ask for questions.", "tick this step as done"] {
             assert!(screen.contains(text), "{text:?} at {size:?} in\n{screen}");
         }
         let mut stage = planned(2, true);
@@ -74,6 +74,37 @@ fn the_sheets_around_a_trial_fit_every_size() {
         }
         stage.at(9.0, Event::Protocol(ProtocolEvent::AnswersShown));
         stage.shows(size, &["6 The signals were given too often.", "to the item without an answer"]);
+    }
+}
+
+#[test]
+fn every_sheet_says_what_to_open_while_the_participants_page_is_missing() {
+    for size in SIZES {
+        for (slot, instructed) in [(0, false), (2, true)] {
+            let mut stage = planned(slot, instructed);
+            stage.session.spec.participant.kind = ParticipantKind::Display;
+            let health = ParticipantDisplayHealth {
+                url: "http://192.168.1.5:50022".to_string(),
+                code: Some("481516".to_string()),
+                ..ParticipantDisplayHealth::default()
+            };
+            stage.model.size = size;
+            stage.model.display = Some(health.clone());
+            let told = ["http://192.168.1.5:50022", "481516"];
+            stage.shows(size, &told);
+            stage.at(0.0, Event::TrialStarted);
+            stage.at(9.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
+            if instructed {
+                stage.shows(size, &told);
+                stage.at(
+                    9.0,
+                    Event::Protocol(ProtocolEvent::PhaseStarted { phase: StudyPhase::Questionnaire, number: 2 }),
+                );
+                stage.shows(size, &told);
+            }
+            stage.model.display = Some(ParticipantDisplayHealth { page: Some([1920, 1080]), ..health });
+            assert!(!stage.screen(size).contains("481516"), "a page is connected");
+        }
     }
 }
 

@@ -169,7 +169,12 @@ fn unbalanced(figures: &StudyProgress) -> String {
 fn attempts(progress: &ParticipantProgress) -> String {
     let mut lines = String::new();
     for (slot, stand) in progress.steps.iter().enumerate() {
-        let is_complete = |attempt: &&TrialAttempt| attempt.outcome == RecordingOutcome::Complete;
+        // A trial that is over counts, also if what follows it was left.
+        let is_complete = |attempt: &&TrialAttempt| match attempt.outcome {
+            RecordingOutcome::Complete => true,
+            RecordingOutcome::Open => attempt.trial_over && attempt.excluded.is_none(),
+            _ => false,
+        };
         let complete: Vec<&str> =
             stand.recordings.iter().filter(is_complete).map(|one| one.recording.as_str()).collect();
         if let ([_, _, ..], Some(_)) = (&complete[..], stand.slot.period) {

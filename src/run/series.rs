@@ -266,7 +266,7 @@ fn which(progress: &ParticipantProgress, recording: &str, slot: usize) -> StartP
         true => (
             "is over, but not all that follows it is done",
             "continue this recording with what follows the trial",
-            "do the whole trial again in another recording; the trial of this one is kept, and does not count",
+            "do the whole trial again in another recording; this trial is kept, and counts until tomcom exclude leaves it out",
         ),
         false => (
             "is not done",

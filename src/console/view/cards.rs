@@ -89,6 +89,7 @@ fn before(session: &Session, model: &ConsoleModel) -> Card {
     );
     let mut facts =
         vec![fact("", who_plays(session), TextRole::Strong), fact("participant", place(session), TextRole::Strong)];
+    facts.extend(missing_page(session, model));
     facts.extend(model.participants_done.map(|(done, all)| {
         fact("study", format!("{done} of {} done", count(all as u64, "participant", "participants")), TextRole::Text)
     }));
@@ -100,7 +101,6 @@ fn before(session: &Session, model: &ConsoleModel) -> Card {
         let name = if index == 0 { "devices" } else { "" };
         facts.push(fact(name, text.trim().to_string(), role));
     }
-    facts.extend(missing_page(session, model));
     // The card covers the gaze's panel, and who starts the sender needs the code.
     let pairing = model.gaze_pairing.as_ref().and_then(|pairing| pairing.line(session, model.now));
     facts.extend(pairing.map(|code| fact("gaze sender", code, TextRole::Strong)));

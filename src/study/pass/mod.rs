@@ -198,7 +198,10 @@ fn analyse(
         same_kitchen(first, (path, &own))?;
         (trial, rows) = (Some((read.trial, read.details, read.facts)), read.rows);
     }
-    Ok((AnalysedRecording { recording: name.clone(), digest, plan, correction, consent, tutorial, waived, trial }, rows))
+    Ok((
+        AnalysedRecording { recording: name.clone(), digest, plan, correction, consent, tutorial, waived, trial },
+        rows,
+    ))
 }
 
 /// Keeps an analysed recording and its rows in files until all recordings are read; practice recordings have no rows.
@@ -261,8 +264,16 @@ fn conclude(
     frozen: Option<(String, FrozenPlan)>,
     copies: Vec<RecordingCopy>,
 ) -> Result<(StudySummary, PathBuf), StudyError> {
-    let CollectedRecordings { mut trials, facts, kept, plans, mut corrections, mut consents, mut tutorials, mut waived } =
-        CollectedRecordings::read(export, number)?;
+    let CollectedRecordings {
+        mut trials,
+        facts,
+        kept,
+        plans,
+        mut corrections,
+        mut consents,
+        mut tutorials,
+        mut waived,
+    } = CollectedRecordings::read(export, number)?;
     arrange(&mut trials);
     waived.sort();
     let practice = (plans.len() - trials.len()) as u64;

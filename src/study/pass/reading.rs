@@ -525,7 +525,8 @@ pub(crate) fn waived_practice(recording: &Path) -> FileResult<Option<WaivedPract
                 result = Some((orders, presses, errors));
             }
             Event::Protocol(ProtocolEvent::CriterionWaived { reason }) => {
-                let practice = |(orders, presses, errors)| WaivedPractice { participant, reason, orders, presses, errors };
+                let practice =
+                    |(orders, presses, errors)| WaivedPractice { participant, reason, orders, presses, errors };
                 return Ok(result.map(practice));
             }
             _ => {}

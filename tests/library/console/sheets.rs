@@ -92,14 +92,13 @@ fn every_sheet_says_what_to_open_while_the_participants_page_is_missing() {
             stage.model.display = Some(health.clone());
             let told = ["http://192.168.1.5:50022", "481516"];
             stage.shows(size, &told);
-            stage.at(0.0, Event::TrialStarted);
-            stage.at(9.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
             if instructed {
+                // The card before the trial, the one after it, and the questionnaire.
+                stage.at(0.0, Event::TrialStarted);
+                stage.at(9.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
                 stage.shows(size, &told);
-                stage.at(
-                    9.0,
-                    Event::Protocol(ProtocolEvent::PhaseStarted { phase: StudyPhase::Questionnaire, number: 2 }),
-                );
+                let (phase, number) = (StudyPhase::Questionnaire, 2);
+                stage.at(9.0, Event::Protocol(ProtocolEvent::PhaseStarted { phase, number }));
                 stage.shows(size, &told);
             }
             stage.model.display = Some(ParticipantDisplayHealth { page: Some([1920, 1080]), ..health });

@@ -126,7 +126,7 @@ fn draw_tutorial(
     }
     let on = onward(session, model);
     let over = [("enter", on.as_str(), plain(KeyCode::Enter))];
-    let skip = ("0", "end the tutorial", Some(KeyChord::char('0')));
+    let skip = ("0", "ends the tutorial", Some(KeyChord::char('0')));
     let (back, next) =
         (("\u{2190}", "previous page", plain(KeyCode::Left)), ("\u{2192}", "next page", plain(KeyCode::Right)));
     let title = "Tutorial of the participant";

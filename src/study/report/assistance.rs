@@ -9,7 +9,7 @@ use crate::arm_comparison::{
 use crate::charts;
 use crate::effect::{AssistanceEffect, LeftOutParticipant, left_out_in_words};
 use crate::figures::StudySummary;
-use crate::headline::fewer;
+use crate::headline::{fewer, mixed_sources};
 use crate::report::elements::{
     Captions, PageColumn, UNKNOWN, cells, keys, nothing, number, p_sentence, p_value, percent, range, scroll, section,
     with_interval,
@@ -21,7 +21,8 @@ pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials
     let headline = figures.effects.first();
     if figures.conditions.len() > 2 {
         // Charts and tests compare two conditions; a study with more conditions has another section for that.
-        return section("Errors and times", scroll(conditions(captions, &figures.conditions)));
+        let content = html! { (scroll(conditions(captions, &figures.conditions))) (sources_differ(figures)) };
+        return section("Errors and times", content);
     }
     let pictures = pictures(captions, figures, trials);
     if pictures.0.is_empty() {
@@ -29,6 +30,7 @@ pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials
     }
     let content = html! {
         (scroll(conditions(captions, &figures.conditions)))
+        (sources_differ(figures))
         div class="figures" { (pictures) } "\n"
         (headline.map_or_else(nothing, in_words))
         (experience(figures))
@@ -44,6 +46,12 @@ pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials
         }
     };
     section(if figures.conditions.len() > 1 { "Does assistance help?" } else { "Errors and times" }, content)
+}
+
+/// Warning below a table of conditions whose columns about causes cannot be compared; empty if they can.
+fn sources_differ(figures: &StudySummary) -> Markup {
+    let Some((words, true)) = mixed_sources(figures) else { return nothing() };
+    html! { p class="warning" { "C" (&words[1..]) "." } "\n" }
 }
 
 fn pictures(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStatistics]) -> Markup {

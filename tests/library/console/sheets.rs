@@ -339,6 +339,11 @@ fn the_sheet_of_the_tutorial_tells_where_the_participant_is() {
         if size == SIZES[0] {
             check_snapshot("console", "tutorial_80x24", screen);
         }
+        // One key does not end it: what is left of it cannot be shown again.
+        assert_eq!(stage.key(KeyCode::Char('0')), None);
+        stage.shows(size, &["End the tutorial?"]);
+        let ended = TutorialEvent::Ended { by: TutorialPageTurner::Wizard };
+        assert_eq!(input(stage.key(KeyCode::Char('y'))), Some(Event::Protocol(ProtocolEvent::Tutorial(ended))));
     }
 }
 

@@ -228,16 +228,29 @@ fn exclude(args: &ExcludeArgs) -> Result<(), Failure> {
 /// are.
 fn exclude_participant(args: &ExcludeArgs, code: &str, reason: &str) -> Result<(), Failure> {
     list::exists(&args.recording)?;
-    let mut ruled = Vec::new();
+    let (mut ruled, mut left) = (Vec::new(), Vec::new());
     for recording in list::of_participant(&args.recording, code)? {
-        if log::is_excluded(&mut LogReader::open(&recording)?)? == args.back {
-            let ExclusionRecord { excluded, reason, at } = log::rule(&recording, !args.back, reason)?;
-            ruled.push(RuledRecording { recording: recording.into(), excluded, reason, at });
+        let log = &mut LogReader::open(&recording)?;
+        if log::is_excluded(log)? != args.back {
+            continue;
         }
+        // What was excluded by itself, at the console or by name, is excluded for another reason, which still holds.
+        if args.back && !log::ruling(log.folder())?.is_some_and(|ruling| ruling.of_participant) {
+            left.push(recording);
+            continue;
+        }
+        let ExclusionRecord { excluded, reason, at, .. } = log::rule_participant(&recording, !args.back, reason)?;
+        ruled.push(RuledRecording { recording: recording.into(), excluded, reason, at });
+    }
+    for recording in &left {
+        let recording = recording.display();
+        put_aside(&format!(
+            "{recording} stays excluded, since it was excluded by itself; tomcom exclude {recording} --back includes it\n"
+        ));
     }
     let words = match (args.back, ruled.len()) {
         (false, 0) => format!("all recordings of {code} are excluded already"),
-        (true, 0) => format!("no recording of {code} is excluded"),
+        (true, 0) => format!("no recording of {code} was excluded with --code"),
         (false, _) => format!("recordings of {code} that are left out of the analysis from now on:"),
         (true, _) => format!("recordings of {code} that are counted in the analysis again:"),
     };

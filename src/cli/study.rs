@@ -20,7 +20,7 @@ use tomcom_study::pass::{self, AnalysisRequest, NamedRecordings, StudyError, sha
 /// report (HTML) and tables (CSV).
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples: tomcom study recordings\n          tomcom study shards/* --out results --format json\n          \
+    after_help = "Examples: tomcom study recordings\n          tomcom study sessions --plan main-study\n          tomcom study shards/* --out results --format json\n          \
                   tomcom study shards/3 --shard 3/8 --out part-3.jsonl\n          \
                   tomcom study --from part-*.jsonl --out results\nMore: docs/study.md, docs/cluster.md, docs/analysis.md"
 )]
@@ -32,6 +32,9 @@ pub(super) struct StudyArgs {
     /// the part.
     #[arg(long)]
     out: Option<PathBuf>,
+    /// Only the recordings of this plan, where there are several; of each, if it is given several times.
+    #[arg(long, value_name = "NAME", conflicts_with = "from")]
+    plan: Vec<String>,
     /// The two raters whose codes of errors are taken; by default the two with the most complete codes of a recording.
     #[arg(long, value_names = ["A", "B"], num_args = 2)]
     raters: Option<Vec<String>>,
@@ -86,7 +89,7 @@ pub(super) fn study(args: &StudyArgs) -> Result<(), Failure> {
         let (figures, report) = shards::join(&request)?;
         return told(args.format, &figures, &report);
     }
-    let recordings = NamedRecordings::find(&request.paths)?;
+    let recordings = NamedRecordings::find(&request.paths, &args.plan)?;
     let bar = progress(recordings.number() as u64, "recordings");
     if let Some(shard) = args.shard {
         let begun = |number: usize| bar.set_length(number as u64);

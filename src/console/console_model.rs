@@ -48,6 +48,7 @@ pub enum Dialog {
     Help(Vec<bool>),
     Quit,
     EndTrial,
+    EndTutorial,
     Pick(Picker),
     Palette(ListCursor),
     Send(SendConfirmation),

@@ -153,10 +153,11 @@ fn read(model: &mut ConsoleModel, session: &Session, tutorial: &Tutorial, stroke
             None => return refuse(model, "this is the first page of the tutorial"),
         },
         SheetKey::Digit(0) => {
-            return send_protocol(model, session, ProtocolEvent::Tutorial(TutorialEvent::Ended { by }));
+            model.dialog = Some(Dialog::EndTutorial);
+            return None;
         }
         SheetKey::Digit(_) | SheetKey::Letter(_) | SheetKey::Skip => {
-            return refuse(model, "arrows turn the participant's page, 0 ends the tutorial");
+            return refuse(model, "arrows turn the participant's page, 0 asks whether to end the tutorial");
         }
         SheetKey::Leave => return leave(model, session),
     };
@@ -165,6 +166,12 @@ fn read(model: &mut ConsoleModel, session: &Session, tutorial: &Tutorial, stroke
         None => TutorialEvent::Ended { by },
     };
     send_protocol(model, session, ProtocolEvent::Tutorial(event))
+}
+
+/// Ends the tutorial before its last page.
+pub(super) fn end_tutorial(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
+    let by = TutorialPageTurner::Wizard;
+    send_protocol(model, session, ProtocolEvent::Tutorial(TutorialEvent::Ended { by }))
 }
 
 fn ask(

@@ -253,6 +253,7 @@ fn answer(
     let yes = chord == KeyChord::char('y') || again;
     match dialog {
         Dialog::Quit if yes => Some(ConsoleCommand::Quit),
+        Dialog::EndTutorial if yes => form::end_tutorial(model, session),
         Dialog::EndTrial if yes => Some(ConsoleCommand::Input(Event::TrialEnded { reason: TrialEndReason::Wizard })),
         _ => None,
     }

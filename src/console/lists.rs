@@ -422,6 +422,8 @@ pub struct StartPrompt {
     pub answers: Vec<String>,
     /// Index of the chosen answer, until enter gives it.
     pub chosen: Option<usize>,
+    /// What is to be opened while the participant's page is wanted and none is connected.
+    pub missing_page: Option<String>,
 }
 
 /// Reply of the user to a question before a recording.
@@ -434,7 +436,7 @@ pub enum StartReply {
 impl StartPrompt {
     /// A question of which no answer is chosen.
     pub fn new(title: String, text: Vec<String>, answers: Vec<String>) -> StartPrompt {
-        StartPrompt { title, text, answers, chosen: None }
+        StartPrompt { title, text, answers, chosen: None, missing_page: None }
     }
 
     /// The reply that a key gives; `None` for keys that choose an answer, for other keys, and for key repeat.

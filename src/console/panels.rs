@@ -176,6 +176,7 @@ fn name(dialog: &Dialog) -> &'static str {
         Dialog::Help(_) => "help",
         Dialog::Quit => "quit",
         Dialog::EndTrial => "end_trial",
+        Dialog::EndTutorial => "end_tutorial",
         Dialog::Palette(_) => "palette",
         Dialog::Send(_) => "send_signal",
         Dialog::Preflight => "preflight",

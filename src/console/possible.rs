@@ -80,7 +80,7 @@ fn reaches(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool 
         Some(Dialog::Pick(_) | Dialog::Palette(_) | Dialog::Help(_) | Dialog::Difference(_)) => {
             stops || (*action == KeyAction::Quit && has_control())
         }
-        Some(Dialog::Quit | Dialog::EndTrial | Dialog::Calibration) => stops,
+        Some(Dialog::Quit | Dialog::EndTrial | Dialog::EndTutorial | Dialog::Calibration) => stops,
     }
 }
 

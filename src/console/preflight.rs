@@ -261,8 +261,13 @@ impl ParticipantDisplayHealth {
     }
 
     /// Address to open for the participant, with the pairing code, while no participant page is connected.
-    pub fn to_open(&self) -> Option<String> {
+    fn to_open(&self) -> Option<String> {
         self.page.is_none().then(|| self.with_code(self.address()))
+    }
+
+    /// What the wizard is told wherever the participant's page is wanted and none is connected.
+    pub fn missing(&self) -> Option<String> {
+        self.to_open().map(|address| format!("the participant's page is not connected: {address}"))
     }
 
     /// Preflight check of the participant's display before a trial whose gaze comes from this source.

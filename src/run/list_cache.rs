@@ -21,7 +21,7 @@ use tomcom_session::log::{LOG_NAME, corrected_code};
 use tomcom_session::settings::Condition;
 use tomcom_session::study_arm::StudyArm;
 use tomcom_session::{Event, TimestampedEvent};
-use tomcom_study::analysis::recording_summary::RecordingKind;
+use tomcom_study::analysis::recording_summary::{ListedPlace, RecordingKind};
 
 /// Number of bytes at the end of a log that its digest covers.
 const TAIL: u64 = 4096;
@@ -58,6 +58,8 @@ pub struct ClosedLogHeader {
     pub condition: Condition,
     /// Wall clock time at which the recording began (UTC, RFC 3339).
     pub date: Option<String>,
+    /// Place in a study plan.
+    pub place: Option<ListedPlace>,
 }
 
 /// The part of a log's header that a list of recordings needs.
@@ -74,6 +76,8 @@ struct HeaderGlance {
 struct SettingsGlance {
     participant: ParticipantGlance,
     trial: TrialGlance,
+    #[serde(default)]
+    step: Option<ListedPlace>,
 }
 
 #[derive(Deserialize)]
@@ -101,13 +105,14 @@ impl ClosedLogHeader {
         if last.event != Event::SessionEnded || header.continues.is_some() {
             return None;
         }
-        let SettingsGlance { participant, trial } = header.session;
+        let SettingsGlance { participant, trial, step } = header.session;
         let correction = corrected_code(recording, &participant.code).ok()?;
         Some(ClosedLogHeader {
             digest: tail.digest(),
             code: correction.map_or(participant.code, |correction| correction.after),
             condition: trial.condition,
             date: header.started,
+            place: step,
         })
     }
 }

@@ -11,7 +11,8 @@ use tomcom_core::base::text::PathText;
 use tomcom_core::base::text::count;
 use tomcom_session::files::KitchenWithSources;
 use tomcom_session::files::file_error::FileResult;
-use tomcom_session::plan::{ParticipantProgress, RecordingOutcome, Study, TrialAttempt};
+use tomcom_session::plan::{ParticipantProgress, RecordingOutcome, Study, TrialAttempt, orders};
+use tomcom_session::study_arm::StudyArm;
 use tomcom_study::files::pool_file;
 use tomcom_study::frozen_plan::FrozenPlan;
 
@@ -127,7 +128,7 @@ pub fn describe(figures: &StudyProgress) -> String {
     );
     let one = |progress: &ParticipantProgress| {
         let trials = progress.steps.iter().filter(|stand| stand.slot.period.is_some());
-        let order: Vec<&str> = trials.map(|stand| stand.slot.condition.name()).collect();
+        let order: Vec<&str> = trials.map(|stand| stand.slot.condition.title()).collect();
         let width = figures.participants.iter().map(|one| one.code.len()).max().unwrap_or(0);
         let stands = stands(progress);
         let stands = stands.split_once(": ").map_or(stands.as_str(), |(_, stands)| stands);
@@ -138,14 +139,42 @@ pub fn describe(figures: &StudyProgress) -> String {
         0 => String::new(),
         all => format!("not counted: {} of the plan\n", count(all, "simulated recording", "simulated recordings")),
     };
+    let head = head + &unbalanced(figures);
     head + &figures.participants.iter().map(one).collect::<String>() + &simulated
+}
+
+/// Remark on a number of participants with whom the orders of the conditions do not come equally often.
+fn unbalanced(figures: &StudyProgress) -> String {
+    let Some(first) = figures.participants.first() else { return String::new() };
+    let trials = |one: &ParticipantProgress| -> Vec<StudyArm> {
+        one.steps.iter().filter(|stand| stand.slot.period.is_some()).map(|stand| stand.slot.condition).collect()
+    };
+    let conditions = trials(first);
+    let (orders, planned) = (orders(conditions.len()).len(), figures.planned);
+    if planned % orders == 0 {
+        return String::new();
+    }
+    let firsts: Vec<StudyArm> = figures.participants.iter().filter_map(|one| trials(one).first().copied()).collect();
+    let mut arms = conditions;
+    arms.sort_unstable();
+    let times = |arm: &StudyArm| format!("{} {}", arm.title(), firsts.iter().filter(|first| *first == arm).count());
+    let times = arms.iter().map(times).collect::<Vec<_>>().join(", ");
+    format!(
+        "not balanced: {} with {orders} orders of the conditions (first comes: {times}); a multiple of {orders} participants is\n",
+        count(planned as u64, "participant", "participants"),
+    )
 }
 
 /// Remarks on a participant's recordings: invalid recordings, and recordings made with another version of the plan.
 fn attempts(progress: &ParticipantProgress) -> String {
     let mut lines = String::new();
     for (slot, stand) in progress.steps.iter().enumerate() {
-        let is_complete = |attempt: &&TrialAttempt| attempt.outcome == RecordingOutcome::Complete;
+        // A trial that is over counts, also if what follows it was left.
+        let is_complete = |attempt: &&TrialAttempt| match attempt.outcome {
+            RecordingOutcome::Complete => true,
+            RecordingOutcome::Open => attempt.trial_over && attempt.excluded.is_none(),
+            _ => false,
+        };
         let complete: Vec<&str> =
             stand.recordings.iter().filter(is_complete).map(|one| one.recording.as_str()).collect();
         if let ([_, _, ..], Some(_)) = (&complete[..], stand.slot.period) {
@@ -155,18 +184,21 @@ fn attempts(progress: &ParticipantProgress) -> String {
                 complete.join(" and in ")
             );
         }
-        for attempt in &stand.recordings {
+        for (index, attempt) in stand.recordings.iter().enumerate() {
+            let open = if index + 1 < stand.recordings.len() { "not finished, repeated" } else { "open" };
             let version = if attempt.other_version { ", recorded under another version of the plan" } else { "" };
-            let arm = attempt.other_arm.map_or(String::new(), |arm| format!(", in the condition {}", arm.name()));
+            let arm = attempt.other_arm.map_or(String::new(), |arm| format!(", in the condition {}", arm.title()));
             let recorded = attempt.recorded_as.as_ref();
             let corrected = recorded.map_or(String::new(), |code| format!(", recorded as {code}{arm}"));
-            let how = match &attempt.outcome {
-                RecordingOutcome::Complete if attempt.other_version || recorded.is_some() => "done",
-                RecordingOutcome::Complete => continue,
-                RecordingOutcome::Open => "open",
-                RecordingOutcome::Running => "being recorded",
-                RecordingOutcome::Excluded { reason } => &format!("excluded ({reason})"),
-                RecordingOutcome::Void { reason } => reason,
+            let how = match (&attempt.outcome, &attempt.waived, &attempt.excluded) {
+                (RecordingOutcome::Complete, Some(reason), _) => &format!("criterion not met, waived ({reason})"),
+                (RecordingOutcome::Complete, None, _) if attempt.other_version || recorded.is_some() => "done",
+                (RecordingOutcome::Complete, None, _) => continue,
+                (RecordingOutcome::Open, _, Some(reason)) => &format!("{open}, excluded ({reason})"),
+                (RecordingOutcome::Open, _, None) => open,
+                (RecordingOutcome::Running, ..) => "being recorded",
+                (RecordingOutcome::Excluded { reason }, ..) => &format!("excluded ({reason})"),
+                (RecordingOutcome::Void { reason }, ..) => reason,
             };
             lines +=
                 &format!("      {} in {}: {how}{version}{corrected}\n", slot_name(progress, slot), attempt.recording);

@@ -19,7 +19,7 @@ use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::log::LogReader;
 use tomcom_session::settings::ConsoleSpec;
 use tomcom_study::analysis::recording_summary::{
-    ExclusionStatus, ListedRecording, RecordingKind, RecordingList, RecordingState,
+    ExclusionStatus, ListedPlace, ListedRecording, RecordingKind, RecordingList, RecordingState,
 };
 use tomcom_study::files::recordings;
 use tomcom_study::kept_cost::KeptCost;
@@ -82,6 +82,7 @@ fn read_or_tell(
         trial_s: None,
         errors: None,
         kind: None,
+        place: None,
         state: RecordingState::Unreadable,
         reason: Some(error.with_remedy()),
     };
@@ -123,6 +124,7 @@ fn from_figures(
         trial_s: Some(figures.trial_s),
         errors: (depth == RecordingListDetail::WithErrors).then_some(figures.errors),
         kind: Some(figures.kind),
+        place: glance.place.clone(),
         state: if is_excluded { RecordingState::Excluded } else { RecordingState::Whole },
         reason: is_excluded.then(|| standing.describe()),
     })
@@ -157,6 +159,7 @@ fn read(path: &Path, depth: RecordingListDetail, cost: &mut KeptCost) -> FileRes
         trial_s: Some(session.trial_clock(session.time).as_secs_f64()),
         errors: (depth == RecordingListDetail::WithErrors).then_some(errors),
         kind: Some(RecordingKind::from_spec(&session.spec)),
+        place: ListedPlace::from_spec(&session.spec),
         state,
         reason: (state == RecordingState::Excluded).then(|| standing.describe()),
     })

@@ -181,7 +181,7 @@ impl Planned {
             }
             NextRecording::Finished => return Ok(Choice::Leave(None)),
         };
-        let (spec, trial) = self.study.settings(progress.wanted(slot, attempt));
+        let (spec, trial) = progress.settings(&self.study, slot, attempt);
         let label = spec.step.as_ref().map_or(String::new(), |step| step.label());
         let continued = match open {
             None => None,
@@ -265,16 +265,28 @@ fn repeat(progress: &ParticipantProgress) -> StartPrompt {
 fn which(progress: &ParticipantProgress, recording: &str, slot: usize) -> StartPrompt {
     let name = slot_name(progress, slot);
     let attempt = progress.steps.get(slot).and_then(|stand| stand.recordings.last());
-    let presses = attempt.map_or(0, |attempt| attempt.presses);
+    let (is_over, ended_where) = attempt.map_or((false, ""), |one| (one.trial_over, one.ended_where.as_str()));
+    let left_out = attempt.and_then(|attempt| attempt.excluded.as_ref());
+    let left_out = left_out.map_or(String::new(), |reason| format!(" It is excluded: {reason}."));
+    let (stands, on, again) = match is_over {
+        true => (
+            "is over, but not all that follows it is done",
+            "continue this recording with what follows the trial",
+            "do the whole trial again in another recording; this trial is kept, and counts until tomcom exclude leaves it out",
+        ),
+        false => (
+            "is not done",
+            "continue this recording where it ended, with a running trial paused",
+            "do this part again from its beginning; the unfinished recording is kept, and does not count",
+        ),
+    };
     StartPrompt::new(
-        format!("{}: {name} is not done", progress.code),
-        vec![format!(
-            "The recording {recording} was cut, or ended before everything was done. It has {presses} presses."
-        )],
+        format!("{}: {name} {stands}", progress.code),
         vec![
-            "continue this recording where it ended, with a running trial paused".to_string(),
-            "do this part again from its beginning; the unfinished recording is kept, and does not count".to_string(),
+            format!("The recording {recording} was cut, or ended before everything was done.{left_out}"),
+            format!("Where it ended: {ended_where}."),
         ],
+        vec![on.to_string(), again.to_string()],
     )
 }
 
@@ -294,11 +306,11 @@ fn consent(study: &Study, progress: &ParticipantProgress, label: &str, on_displa
     StartPrompt::new(format!("{}: {label}", progress.code), text, vec![yes.to_string(), no.to_string()])
 }
 
-/// Name of a planned trial: "familiarisation", "trial 1".
+/// Name of a planned trial: "practice", "trial 1".
 pub(super) fn slot_name(progress: &ParticipantProgress, slot: usize) -> String {
     match progress.steps.get(slot).and_then(|stand| stand.slot.period) {
         Some(period) => format!("trial {period}"),
-        None => "familiarisation".to_string(),
+        None => "practice".to_string(),
     }
 }
 
@@ -310,6 +322,9 @@ pub(super) fn stands(progress: &ParticipantProgress) -> String {
         excluded => format!(", {excluded} excluded: repeat with tomcom operate SESSION --code {code}"),
     };
     let stand = match &progress.next {
+        NextRecording::Finished if !progress.has_counting_trial() => {
+            format!("{code}: nothing counts, since every trial is excluded")
+        }
         NextRecording::Finished => format!("{code}: everything is done"),
         NextRecording::Begin { slot, attempt: 1 } => {
             format!("{code}: {done} of {all} done, next: {}", slot_name(progress, *slot))

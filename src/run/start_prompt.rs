@@ -37,7 +37,9 @@ pub(super) async fn ask_consent(
     on_display: bool,
 ) -> Result<Option<(usize, AnswerDevice)>, LiveError> {
     let (theme, asked, button) = (station.theme, Instant::now(), ConsentHold::default());
-    let mut shell = OpenQuestion { question, on_display, asked, button, theme, notice: None, dirty: true };
+    let missing_page = station.display.missing_page();
+    let mut shell =
+        OpenQuestion { question, on_display, missing_page, asked, button, theme, notice: None, dirty: true };
     let reply = event_loop::run(&mut shell, station).await?;
     Ok(match reply {
         Some((StartReply::Answer(index), on)) => Some((index, on)),
@@ -49,6 +51,8 @@ pub(super) async fn ask_consent(
 struct OpenQuestion {
     question: StartPrompt,
     on_display: bool,
+    /// Says what is to be opened while the participant's page is wanted and none is connected.
+    missing_page: Box<dyn Fn() -> Option<String>>,
     /// When the question was asked: the time with which the hold of the page's button is measured begins here.
     asked: Instant,
     button: ConsentHold,
@@ -98,6 +102,10 @@ impl ConsoleShell for OpenQuestion {
             }
             _ => None,
         })
+    }
+
+    fn prepare(&mut self) {
+        self.question.missing_page = (self.missing_page)();
     }
 
     fn view(&self) -> ShellView<'_> {

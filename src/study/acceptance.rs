@@ -56,29 +56,57 @@ fn asked_after(trial: &TrialStatistics, answered: &QuestionnaireAnswer) -> Optio
     (!answered.before).then_some(trial.planned_arm)
 }
 
+/// An answer with the trial of whose recording it is.
+type TrialAnswer<'a> = (&'a TrialStatistics, &'a QuestionnaireAnswer);
+
+/// The answers that the analysis counts, in the order of the trials, which must be ordered by participant: those after
+/// trials that count; and those before the trials, which are the participant's, whatever became of the trial, as long as
+/// one of the participant's counts. Of a questionnaire that was asked before several recordings the last answers count.
+pub(super) fn answers_that_count(trials: &[TrialStatistics]) -> Vec<TrialAnswer<'_>> {
+    let mut counted = Vec::new();
+    for own in trials.chunk_by(|a, b| a.participant == b.participant) {
+        if !own.iter().any(TrialStatistics::counts) {
+            continue;
+        }
+        for (index, trial) in own.iter().enumerate() {
+            let is_asked_again = |answered: &QuestionnaireAnswer| {
+                let is_it = |other: &QuestionnaireAnswer| {
+                    other.before && other.asked.questionnaire == answered.asked.questionnaire
+                };
+                own[index + 1..].iter().any(|later| later.answers.iter().any(is_it))
+            };
+            let counts = |answered: &&QuestionnaireAnswer| match answered.before {
+                true => !is_asked_again(answered),
+                false => trial.counts(),
+            };
+            counted.extend(trial.answers.iter().filter(counts).map(|answered| (trial, answered)));
+        }
+    }
+    counted
+}
+
 /// Scores of all questionnaires by condition, in the order in which questionnaires and conditions occur.
-pub(super) fn scores(trials: &[&TrialStatistics]) -> Vec<ScoreSummary> {
+pub(super) fn scores(answers: &[TrialAnswer]) -> Vec<ScoreSummary> {
     let mut found: Vec<ScoreSummary> = Vec::new();
-    for trial in trials {
-        let mut occasions: Vec<(&str, bool)> = Vec::new();
-        for answered in &trial.answers {
-            // Every answer of an occasion has the occasion's score, so the score is taken from one answer only.
-            let occasion = (answered.asked.questionnaire.as_str(), answered.before);
-            let Some(score) = answered.score.filter(|_| !occasions.contains(&occasion)) else { continue };
-            occasions.push(occasion);
-            let condition = asked_after(trial, answered);
-            let is_it =
-                |one: &ScoreSummary| (&one.questionnaire, one.condition) == (&answered.asked.questionnaire, condition);
-            match found.iter_mut().find(|one| is_it(one)) {
-                Some(one) => one.scores.push(score),
-                None => found.push(ScoreSummary {
-                    questionnaire: answered.asked.questionnaire.clone(),
-                    condition,
-                    scores: vec![score],
-                    mean: None,
-                    sd: None,
-                }),
-            }
+    // Every answer of an occasion has the occasion's score, so the score is taken from one answer only.
+    for of_occasion in answers.chunk_by(|(trial, one), (other_trial, other)| {
+        (&trial.recording, &one.asked.questionnaire, one.before)
+            == (&other_trial.recording, &other.asked.questionnaire, other.before)
+    }) {
+        let (trial, answered) = of_occasion[0];
+        let Some(score) = answered.score else { continue };
+        let condition = asked_after(trial, answered);
+        let is_it =
+            |one: &ScoreSummary| (&one.questionnaire, one.condition) == (&answered.asked.questionnaire, condition);
+        match found.iter_mut().find(|one| is_it(one)) {
+            Some(one) => one.scores.push(score),
+            None => found.push(ScoreSummary {
+                questionnaire: answered.asked.questionnaire.clone(),
+                condition,
+                scores: vec![score],
+                mean: None,
+                sd: None,
+            }),
         }
     }
     for one in &mut found {
@@ -89,38 +117,35 @@ pub(super) fn scores(trials: &[&TrialStatistics]) -> Vec<ScoreSummary> {
 }
 
 /// Answers to the items of all questionnaires by condition, in the order in which items and conditions occur.
-pub(super) fn items(trials: &[&TrialStatistics]) -> Vec<ItemSummary> {
+pub(super) fn items(answers: &[TrialAnswer]) -> Vec<ItemSummary> {
     let mut items: Vec<(ItemSummary, Vec<f64>)> = Vec::new();
-    for trial in trials {
-        for answered in &trial.answers {
-            let condition = asked_after(trial, answered);
-            let is_it = |(item, _): &(ItemSummary, Vec<f64>)| {
-                let (one, other) = (&item.asked, &answered.asked);
-                (&one.questionnaire, &one.item, item.condition, one.kind, item.points)
-                    == (&other.questionnaire, &other.item, condition, other.kind, answered.points)
-            };
-            let at = match items.iter().position(is_it) {
-                Some(at) => at,
-                None => {
-                    items.push((ItemSummary::without_answers(answered, condition), Vec::new()));
-                    items.len() - 1
-                }
-            };
-            let (item, numbers) = &mut items[at];
-            let Some(answer) = &answered.answer else {
-                item.left_out += 1;
-                continue;
-            };
-            item.answers += 1;
-            numbers.extend(answer.number().map(|number| number as f64));
-            let point = answer.number().filter(|_| answered.points.is_some());
-            let chosen =
-                answered.options.iter().enumerate().filter(|(_, option)| answer.options().contains(&option.id));
-            let counted = chosen.map(|(index, _)| index).chain(point.and_then(|point| usize::try_from(point - 1).ok()));
-            for index in counted {
-                if let Some(count) = item.counts.get_mut(index) {
-                    *count += 1;
-                }
+    for &(trial, answered) in answers {
+        let condition = asked_after(trial, answered);
+        let is_it = |(item, _): &(ItemSummary, Vec<f64>)| {
+            let (one, other) = (&item.asked, &answered.asked);
+            (&one.questionnaire, &one.item, item.condition, one.kind, item.points)
+                == (&other.questionnaire, &other.item, condition, other.kind, answered.points)
+        };
+        let at = match items.iter().position(is_it) {
+            Some(at) => at,
+            None => {
+                items.push((ItemSummary::without_answers(answered, condition), Vec::new()));
+                items.len() - 1
+            }
+        };
+        let (item, numbers) = &mut items[at];
+        let Some(answer) = &answered.answer else {
+            item.left_out += 1;
+            continue;
+        };
+        item.answers += 1;
+        numbers.extend(answer.number().map(|number| number as f64));
+        let point = answer.number().filter(|_| answered.points.is_some());
+        let chosen = answered.options.iter().enumerate().filter(|(_, option)| answer.options().contains(&option.id));
+        let counted = chosen.map(|(index, _)| index).chain(point.and_then(|point| usize::try_from(point - 1).ok()));
+        for index in counted {
+            if let Some(count) = item.counts.get_mut(index) {
+                *count += 1;
             }
         }
     }

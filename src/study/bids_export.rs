@@ -58,7 +58,7 @@ struct Planned {
 /// exported, too. `done` is called after each recording. Errors: a recording cannot be read or is still being written,
 /// or the data set cannot be written.
 pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: impl Fn()) -> FileResult<BidsSummary> {
-    let GatheredRecordings { paths, copies } = GatheredRecordings::find(recordings)?;
+    let GatheredRecordings { paths, copies, .. } = GatheredRecordings::find(recordings)?;
     let whole =
         paths.into_iter().map(|path| header(&path).map(|header| (path, header))).collect::<FileResult<Vec<_>>>()?;
     let labels = BidsLabelMap::from_names(whole.iter().map(|(_, header)| header.session.participant.code.as_str()));

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use crate::analysis::annotations::codes::{self as annotations, AnnotatedCode};
 use crate::figures::IdenticalCodes;
+use crate::standing::exclusion_status;
 use tomcom_core::base::text::{count, decimal};
 use tomcom_core::measures::raters::{
     AgreementTable, CodableErrors, ErrorCauseCode, RaterAgreement, RaterCodes, RaterConsensus, RaterPair, of_most,
@@ -31,6 +32,8 @@ pub struct CodedRecording {
     pub codes: BTreeMap<String, RaterCodes>,
     pub consensus: Option<RaterConsensus>,
     pub known: Option<RaterCodes>,
+    /// Why its errors never count, in words: practice, or a trial that is left out.
+    pub left_out: Option<String>,
 }
 
 impl CodedRecording {
@@ -45,6 +48,12 @@ impl CodedRecording {
         let kitchen = &replay.session().kitchen;
         let is_known = !judged.is_empty() && judged.iter().all(|press| press.belief_known);
         let folder = replay.log().folder().to_path_buf();
+        let session = &replay.follower.session;
+        let is_practice = session.spec.step.as_ref().is_some_and(|step| step.period.is_none());
+        let left_out = match is_practice {
+            true => Some("practice".to_string()),
+            false => exclusion_status(session, replay.log())?.left_out(session, replay.log().ending()),
+        };
         let codable = CodableErrors::from_presses(kitchen, judged);
         Ok(CodedRecording {
             codes: rater_codes::read_all(&folder, &codable)?,
@@ -52,6 +61,7 @@ impl CodedRecording {
             codable,
             errors: ListedError::all(&replay.follower),
             known: is_known.then(|| RaterCodes::known(kitchen, judged)),
+            left_out,
             folder,
         })
     }
@@ -151,6 +161,8 @@ pub struct CodedRecordingSummary {
     pub errors: u64,
     pub coded: BTreeMap<String, u64>,
     pub consensus: Option<ConsensusSummary>,
+    /// Why its errors never count; null if they do.
+    pub left_out: Option<String>,
     /// Pairs of raters ("R1+R2") who gave the same codes to all errors; absent if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub identical: Vec<IdenticalCodes>,
@@ -228,6 +240,7 @@ impl InterRaterSummary {
             errors: one.codable.errors.len() as u64,
             coded: one.codes.iter().map(|(rater, codes)| (rater.clone(), codes.0.len() as u64)).collect(),
             consensus: one.settled(),
+            left_out: one.left_out.clone(),
             identical: one.identical(),
         };
         let pair = |(of, with): (String, String), table: AgreementTable| RaterPairSummary {
@@ -254,10 +267,12 @@ pub fn describe(figures: &InterRaterSummary) -> String {
     for one in &figures.recordings {
         let coded: Vec<String> = one.coded.iter().map(|(rater, number)| format!("{rater} {number}")).collect();
         let coded = match coded.is_empty() {
+            true if one.left_out.is_some() => "need not be coded".to_string(),
             true => "no rater has coded this recording yet".to_string(),
             false => format!("coded by each rater: {}", coded.join(", ")),
         };
-        text += &format!("{}: {}, {coded}\n", one.recording, count(one.errors, "error", "errors"));
+        let left_out = one.left_out.as_ref().map_or(String::new(), |why| format!(" that do not count ({why})"));
+        text += &format!("{}: {}{left_out}, {coded}\n", one.recording, count(one.errors, "error", "errors"));
         text += &one.consensus.as_ref().map_or(String::new(), describe_consensus);
         for identical in &one.identical {
             text += &format!("  {}\n", identical.in_words());

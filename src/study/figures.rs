@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::acceptance::{Acceptance, ItemSummary, ScoreSummary, acceptance, items, scores};
+use crate::acceptance::{Acceptance, ItemSummary, ScoreSummary, acceptance, answers_that_count, items, scores};
 use crate::analysis::offer_summary::OfferSummary;
 use crate::analysis::probe_figures::ProbeSummary;
 use crate::arm_comparison::{ArmAnalysis, ArmDeviation, StudyArmComparison, StudyConditionSummary};
@@ -12,6 +12,7 @@ use crate::effect::AssistanceEffect;
 use crate::facts::RecordingFacts;
 use crate::frozen_plan::PreregistrationCheck;
 use crate::live_arms::{SignalSenderResults, live_arms};
+use crate::pass::reading::WaivedPractice;
 use crate::planned_trial::{MissingTrials, RecordingCopy};
 use crate::rater_episodes::RaterFalseBeliefAgreement;
 use crate::robot_tally::{RobotArmTotals, by_arm};
@@ -25,6 +26,7 @@ use tomcom_core::measures::raters::{AgreementTable, BeliefSource, RaterAgreement
 use tomcom_core::measures::wizard_performance::WizardMeasures;
 use tomcom_session::event::TrialEndReason;
 use tomcom_session::header::CodeCorrection;
+use tomcom_session::plan::PrimaryOutcome;
 use tomcom_session::settings::ParticipantKind;
 
 /// Seed of random permutations and bootstrap resamples; fixed, so that the same recordings give the same statistics.
@@ -54,6 +56,7 @@ pub struct StudySummary {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub copies: Vec<RecordingCopy>,
     pub conditions: Vec<StudyConditionSummary>,
+    pub primary_outcome: PrimaryOutcome,
     /// Effect of assistance on errors per human press: the interaction of period and starting group.
     pub anova: Option<FTest>,
     pub pearson: Option<Correlation>,
@@ -106,6 +109,8 @@ pub struct StudySummary {
     pub stale_consensus: Vec<StaleConsensus>,
     pub left_out: Vec<ExcludedTrial>,
     pub practice: u64,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub waived: Vec<WaivedPractice>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -193,6 +198,7 @@ impl StudySummary {
             copies: Vec::new(),
             corrections: Vec::new(),
             conditions,
+            primary_outcome: counting.iter().find_map(|trial| trial.aims).unwrap_or_default().outcome,
             anova: effects[0].assistance(),
             pearson: effects[0].pearson,
             permutation_p: effects[0].permutation_p,
@@ -216,8 +222,8 @@ impl StudySummary {
             wizard,
             offers: (!details.offers.is_empty()).then(|| details.offers.summary()),
             acceptance: acceptance(&counting),
-            questionnaires: items(&counting),
-            questionnaire_scores: scores(&counting),
+            questionnaires: items(&answers_that_count(trials)),
+            questionnaire_scores: scores(&answers_that_count(trials)),
             tutorial: None,
             probes: ProbeSummary::from_trials(details.probes.iter().map(|(code, probes)| (code.as_str(), probes))),
             raters: agreement(&counting),
@@ -228,6 +234,7 @@ impl StudySummary {
             stale_consensus: stale.collect(),
             left_out: left_out.collect(),
             practice,
+            waived: Vec::new(),
         }
     }
 }

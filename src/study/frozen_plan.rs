@@ -214,7 +214,10 @@ impl PreregistrationCheck {
         differences.extend(
             others.iter().map(|(what, number)| format!("{} {what}", count(*number, "recording is", "recordings are"))),
         );
-        let there: BTreeSet<&str> = recordings.iter().map(|recording| recording.participant.as_str()).collect();
+        // Recordings of other plans are told above; their participants are not those of this plan.
+        let is_own = |recording: &&RecordedPlan| recording.plan.as_ref().is_some_and(|(plan, _)| *plan == frozen.plan);
+        let own = recordings.iter().filter(is_own);
+        let there: BTreeSet<&str> = own.map(|recording| recording.participant.as_str()).collect();
         let is_planned = |code: &&&str| frozen.participants.iter().any(|planned| planned == **code);
         let strangers: Vec<&str> = there.iter().filter(|code| !is_planned(code)).copied().collect();
         let missing = frozen.participants.iter().map(String::as_str).filter(|code| !there.contains(code));

@@ -20,6 +20,8 @@ use tomcom_session::{LogHeader, person_code};
 pub struct GatheredRecordings {
     /// Paths of the recordings, in the order in which they were named; those of a folder are sorted by name.
     pub paths: Vec<PathBuf>,
+    /// In the order of `paths`: the code of the participant, and the plan; a tutorial alone is of the plan that has it.
+    pub places: Vec<(String, Option<String>)>,
     pub copies: Vec<RecordingCopy>,
 }
 
@@ -32,6 +34,7 @@ struct FoundRecording {
     code: String,
     /// Whether the folder has the name that the program gave it, as far as that can be seen: it names the participant.
     is_named: bool,
+    plan: Option<String>,
     trial: Option<PlannedTrialKey>,
 }
 
@@ -132,9 +135,11 @@ impl GatheredRecordings {
             }
         }
         check_kinds(&opened, &trials)?;
+        let place = |index: &usize| (opened[*index].code.clone(), opened[*index].plan.clone());
+        let places = kept.iter().map(place).collect();
         let paths = kept.into_iter().map(|index| opened[index].path.clone()).collect();
         let copies = order.iter().filter_map(|index| copies.remove(index)).collect();
-        Ok(GatheredRecordings { paths, copies })
+        Ok(GatheredRecordings { paths, places, copies })
     }
 
     /// These, and then the others. Errors: a recording, or a copy of it, is among both.
@@ -163,7 +168,8 @@ impl FoundRecording {
         let (code, recorded_code) = (log.header.session.participant.code.clone(), log.header.recorded_code());
         let trial = planned_trial(&log.header);
         let is_named = logs.last().is_some_and(|(log, _)| folder_name(log).contains(recorded_code));
-        Ok(FoundRecording { path: path.to_path_buf(), logs, code, is_named, trial })
+        let plan = log.header.session.step.as_ref().map(|step| step.plan_of_study().to_string());
+        Ok(FoundRecording { path: path.to_path_buf(), logs, code, is_named, plan, trial })
     }
 
     fn log(&self) -> &PathBuf {

@@ -125,7 +125,7 @@ pub struct MissingTrials {
     pub plan: String,
     /// Number of the participant in the plan, from 1; null if only recordings whose code was corrected are there.
     pub participant: Option<u32>,
-    /// Code of the participant; `None` if there is no recording of the participant.
+    /// Code of the participant; `None` if there is no recording of the participant and the codes are no numbers.
     pub code: Option<String>,
     /// Numbers of the participant's trials without a recording, from 1.
     pub trials: Vec<u32>,
@@ -165,9 +165,13 @@ impl PlanRecordings<'_> {
         let known: BTreeMap<u32, (&str, &BTreeSet<u32>)> =
             self.participants.iter().filter_map(|(code, (index, trials))| Some(((*index)?, (*code, trials)))).collect();
         let after_last = known.keys().last().map_or(0, |last| last + 1);
+        // Where a plan only counts its participants, their codes are their numbers: P01, P02, …
+        let digits = known.values().next().map_or(0, |(code, _)| code.len().saturating_sub(1));
+        let numbered = |index: u32| format!("P{:0digits$}", index + 1);
+        let are_numbers = known.iter().all(|(index, (code, _))| *code == numbered(*index));
         let in_order = (0..after_last).map(|index| match known.get(&index) {
             Some((code, trials)) => missing(Some(index), Some(code), trials),
-            None => missing(Some(index), None, &none),
+            None => missing(Some(index), are_numbers.then(|| numbered(index)).as_deref(), &none),
         });
         let others = self.participants.iter().filter(|(_, (index, _))| index.is_none());
         let others = others.map(|(code, (_, trials))| missing(None, Some(code), trials));
@@ -176,6 +180,13 @@ impl PlanRecordings<'_> {
 }
 
 pub fn in_words(missing: &[MissingTrials]) -> Option<String> {
+    let of_plans: Vec<String> = missing.chunk_by(|a, b| a.plan == b.plan).filter_map(of_plan).collect();
+    (!of_plans.is_empty()).then(|| of_plans.join("; "))
+}
+
+/// The missing trials of one plan.
+fn of_plan(missing: &[MissingTrials]) -> Option<String> {
+    let plan = &missing.first()?.plan;
     let number: u64 = missing.iter().map(|one| one.trials.len() as u64).sum();
     let named: Vec<String> = missing.iter().take(NAMED).map(MissingTrials::describe).collect();
     let others = missing.len().saturating_sub(NAMED) as u64;
@@ -183,14 +194,15 @@ pub fn in_words(missing: &[MissingTrials]) -> Option<String> {
         0 => String::new(),
         _ => format!("; and of {}", count(others, "more participant", "more participants")),
     };
-    let what = if number == 1 { "trial of the plan has" } else { "trials of the plan have" };
-    (number > 0).then(|| format!("{number} {what} no recording: {}{others}", named.join("; ")))
+    let (trials, have) = if number == 1 { ("trial", "has") } else { ("trials", "have") };
+    let named = named.join("; ");
+    (number > 0).then(|| format!("{number} {trials} of the plan \"{plan}\" {have} no recording: {named}{others}"))
 }
 
 impl MissingTrials {
     /// The participant with the trials: "P03 trial 2".
     fn describe(&self) -> String {
-        let number = || self.participant.map_or(String::new(), |number| format!("participant {number}"));
+        let number = || self.participant.map_or(String::new(), |number| format!("the plan's participant {number}"));
         let who = self.code.clone().unwrap_or_else(number);
         let trials: Vec<String> = self.trials.iter().map(u32::to_string).collect();
         match &trials[..] {

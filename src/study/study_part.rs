@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::facts::RecordingFacts;
 use crate::frozen_plan::RecordedPlan;
-use crate::pass::reading::RecordedConsent;
+use crate::pass::reading::{RecordedConsent, WaivedPractice};
 use crate::planned_trial::{PlannedTrialKey, RecordingCopy};
 use crate::tables::participants::TutorialQuestionRow;
 use crate::trial_statistics::{TrialDetails, TrialStatistics};
@@ -71,6 +71,7 @@ pub struct AnalysedRecording {
     /// The consent with which the recording begins; `None` if it begins without.
     pub consent: Option<RecordedConsent>,
     pub tutorial: Vec<TutorialQuestionRow>,
+    pub waived: Option<WaivedPractice>,
     /// The recording's trial, with its details and with what the report tells about the recording; `None` for practice.
     pub trial: Option<(TrialStatistics, TrialDetails, RecordingFacts)>,
 }
@@ -163,10 +164,7 @@ pub(crate) fn check_parts(parts: &[PartHeader]) -> Result<(), ShardMismatch> {
         }
         if part.recordings > 0 && part.plans != study.plans {
             let found = format!("a part of {}, beside a part of {}", plans(part), plans(study));
-            return wrong(
-                found,
-                "parts of one study; recordings of several plans are analysed together without --shard",
-            );
+            return wrong(found, "parts of one plan: tomcom study DIR --plan NAME --shard PART/PARTS");
         }
         if places.insert(part.shard, index).is_some() {
             return wrong(format!("part {} of {} for the second time", part.shard, part.shards), "each part once");

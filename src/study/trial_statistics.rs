@@ -1,6 +1,8 @@
 //! Statistics of trials: those that the analysis keeps in memory for every trial of a study, the details that it keeps
 //! in temporary files and reads trial by trial, and sums over both.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Deserializer, Serialize, de};
 
 use crate::analysis::offer_summary::{OfferSummary, OfferTally, TimedOffer};
@@ -277,6 +279,10 @@ pub struct TrialTotals {
     pub error_rate_human: Option<f64>,
     /// Source of the participants' beliefs; null if beliefs are unknown in any trial.
     pub beliefs_from: Option<BeliefSource>,
+    /// Number of trials by the source from which the causes of their errors are known; of trials without errors only if
+    /// no trial has any.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub belief_sources: BTreeMap<BeliefSource, u64>,
     pub belief_related_errors: Option<u64>,
     pub belief_related_by_kind: Option<BeliefErrorCounts>,
     /// Share of the errors that follow from false beliefs, from 0 to 1.
@@ -326,7 +332,8 @@ impl TrialTotals {
         let per_100 = |number: u64| (human_actions > 0).then(|| 100.0 * number as f64 / human_actions as f64);
         let interval = share_interval(related, errors, LEVEL);
         TrialTotals {
-            beliefs_from: source(trials),
+            beliefs_from: sources(trials).into_keys().max(),
+            belief_sources: sources(trials),
             belief_related_errors: Some(related),
             belief_related_by_kind: Some(
                 beliefs.iter().fold(BeliefErrorCounts::default(), |sum, one| sum.plus(one.causes)),
@@ -346,11 +353,16 @@ impl TrialTotals {
     }
 }
 
-/// The least reliable one. Trials without errors count only if all are: there was nothing to find out.
-fn source(trials: &[&TrialStatistics]) -> Option<BeliefSource> {
-    let of = |trial: &&&TrialStatistics| trial.beliefs.as_ref().map(|beliefs| beliefs.basis);
-    let with_errors = trials.iter().filter(|trial| trial.errors > 0).filter_map(|trial| of(&trial)).max();
-    with_errors.or_else(|| trials.iter().filter_map(|trial| of(&trial)).max())
+/// Trials by source. Those without errors count only if all are: there was nothing to find out.
+fn sources(trials: &[&TrialStatistics]) -> BTreeMap<BeliefSource, u64> {
+    let has_errors = trials.iter().any(|trial| trial.errors > 0 && trial.beliefs.is_some());
+    let mut sources = BTreeMap::new();
+    for trial in trials.iter().filter(|trial| trial.errors > 0 || !has_errors) {
+        if let Some(beliefs) = &trial.beliefs {
+            *sources.entry(beliefs.basis).or_default() += 1;
+        }
+    }
+    sources
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -53,7 +53,7 @@ fn copy(recording: &Path, to: &Path) -> PathBuf {
 }
 
 fn number(paths: &[PathBuf]) -> usize {
-    NamedRecordings::find(paths).expect("recordings").number()
+    NamedRecordings::find(paths, &[]).expect("recordings").number()
 }
 
 fn refusal(paths: &[PathBuf]) -> String {
@@ -101,6 +101,31 @@ fn of_two_equal_recordings_the_one_in_its_own_folder_counts() {
 }
 
 #[test]
+fn one_plan_is_analysed_and_several_only_if_each_is_named() {
+    let root = folder("plans");
+    let log = log(&root);
+    record(&root.join("a/P01-1"), &log, |_| ());
+    record(&root.join("a/P02-1"), &log, |header| {
+        header["session"]["step"]["plan"] = json!("another");
+        header["session"]["participant"]["code"] = json!("P02");
+    });
+    let paths = [root.join("a")];
+    let find = |plans: &[&str]| {
+        let plans: Vec<String> = plans.iter().map(|plan| plan.to_string()).collect();
+        NamedRecordings::find(&paths, &plans).map(|found| found.number()).map_err(|error| error.to_string())
+    };
+    let told = find(&[]).expect_err("two plans");
+    assert!(told.contains("recordings of several plans: \"another\" (1 recording), \"paper\" (1 recording)"), "{told}");
+    assert_eq!((find(&["paper"]), find(&["another"]), find(&["paper", "another"])), (Ok(1), Ok(1), Ok(2)));
+    assert!(find(&["no-plan"]).expect_err("no such plan").contains("no recording of the plan \"no-plan\""));
+    // One code in two plans would be one participant.
+    record(&root.join("a/P01-2"), &log, |header| header["session"]["step"]["plan"] = json!("another"));
+    let told = find(&["paper", "another"]).expect_err("one code");
+    assert!(told.contains("recordings of P01 in the plan"), "{told}");
+    assert_eq!(find(&["another"]), Ok(2));
+}
+
+#[test]
 fn two_recordings_that_count_for_one_trial_are_refused_with_both_names() {
     let root = folder("twice");
     let log = log(&root);
@@ -115,7 +140,7 @@ fn two_recordings_that_count_for_one_trial_are_refused_with_both_names() {
     assert!(told.contains(&second.display().to_string()), "{told}");
     assert!(told.contains("a second recording of trial 1 of P01 in the plan \"paper\""), "{told}");
     assert!(told.contains(&format!("which {} is a recording of", first.display())), "{told}");
-    assert!(NamedRecordings::find(&both).is_err());
+    assert!(NamedRecordings::find(&both, &[]).is_err());
     // What does not count is no second recording: excluded, cut, another trial, practice, another plan, no plan.
     let told = rule(&second, false, "").expect_err("it was never excluded").to_string();
     assert!(told.contains("no exclusion of"), "{told}");
@@ -144,7 +169,7 @@ fn two_recordings_that_count_for_one_trial_are_refused_with_both_names() {
                 step.retain(|_, value| !value.is_null());
             }
         });
-        assert_eq!(number(&both), 2);
+        assert_eq!(GatheredRecordings::find(&both).expect("recordings").paths.len(), 2);
     }
     record(&second, &log, |header| header["session"]["participant"]["code"] = json!("p01"));
     let told = refusal(&both);
@@ -415,10 +440,11 @@ fn every_reader_has_the_corrected_code_until_it_is_taken_back() {
     let request =
         AnalysisRequest { paths: vec![out.clone()], out: folder("results"), extent, raters: None, frozen: None };
     let (figures, report) =
-        pass::study(&request, &NamedRecordings::find(&request.paths).expect("recordings"), || ()).expect("analysed");
+        pass::study(&request, &NamedRecordings::find(&request.paths, &[]).expect("recordings"), || ())
+            .expect("analysed");
     let words = "code of the participant corrected: P02-1: P02 is P03 (the code of the day before; ";
     assert!(describe(&figures).contains(words), "{}", describe(&figures));
-    assert!(describe(&figures).contains("2 trials of the plan have no recording: P02 trial 1; P03 trial 2"));
+    assert!(describe(&figures).contains("2 trials of the plan \"paper\" have no recording: P02 trial 1; P03 trial 2"));
     assert!(fs::read_to_string(report).expect("a report").contains(words));
 
     assert!(correct(&recording, Some("P03"), "again").expect_err("refused").to_string().contains("has already"));

@@ -93,9 +93,9 @@ fn eight_parts_are_analysed_each_by_itself_and_joined_to_the_bytes_of_one_analys
     (1..=PARTS).for_each(|number| drop(part(number)));
     let less = of(&["study", "--from"], &parts, &["--out", &at("less")]);
     assert!(less.contains("7 trials of 4 participants"), "{less}");
-    assert!(less.contains("\n1 trial of the plan has no recording: P02 trial 1\n"), "{less}");
+    assert!(less.contains("\n1 trial of the plan \"paper\" has no recording: P02 trial 1\n"), "{less}");
     let report = fs::read_to_string(folder.join("less/report.html")).expect("a report");
-    assert!(report.contains("1 trial of the plan has no recording: P02 trial 1"), "the report says it, too");
+    assert!(report.contains("has no recording: P02 trial 1"), "the report says it, too");
     assert!(!whole.contains("no recording") && !whole.contains("missing_trials"), "{whole}");
     refused(&["simulate", &plan, "--shard", "1/9", "--out", &at("none")], "--shard of 9 parts, with 8 trials");
     assert!(!folder.join("none").exists(), "nothing is simulated for too many parts");

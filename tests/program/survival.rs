@@ -287,7 +287,9 @@ fn onward(screen: &str) -> &'static [&'static str] {
     let advances = ["READY", "PAUSED", ". next recording", ". end the series", ". next phase: questionnaire"];
     match () {
         () if shows("enter save the text") || shows("enter waive for this reason") => &["Enter"],
-        () if shows("SIMULATED PARTICIPANT") || shows("is not done") => &["1", "Enter"],
+        () if shows("SIMULATED PARTICIPANT") || shows("is not done") || shows("what follows the trial") => {
+            &["1", "Enter"]
+        }
         () if shows("is not met") => &["1"],
         () if shows("0 no answer") => &["3", "Enter"],
         () if shows("RUNNING") => &[],

@@ -13,6 +13,7 @@ use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
 use crate::console::form::sheet;
 use crate::console::key_action::{KeyAction, KeyLayer, ManualAction};
+use crate::console::preflight::{ParticipantDisplayHealth, is_wanted};
 use crate::console::text_columns::{width, wrap};
 use tomcom_core::base::text::count;
 use tomcom_core::base::time::SessionTime;
@@ -88,6 +89,7 @@ fn before(session: &Session, model: &ConsoleModel) -> Card {
     );
     let mut facts =
         vec![fact("", who_plays(session), TextRole::Strong), fact("participant", place(session), TextRole::Strong)];
+    facts.extend(missing_page(session, model));
     facts.extend(model.participants_done.map(|(done, all)| {
         fact("study", format!("{done} of {} done", count(all as u64, "participant", "participants")), TextRole::Text)
     }));
@@ -107,6 +109,12 @@ fn before(session: &Session, model: &ConsoleModel) -> Card {
     let preflight = KeyAction::Manual(ManualAction::Preflight);
     keys.extend(model.keys.chord_for(&preflight).map(|key| (key, "show all preflight checks".to_string())));
     Card { title: "Ready to start".to_string(), facts, keys }
+}
+
+/// Line of a card with what is to be opened while the participant's page is wanted and none is connected.
+fn missing_page(session: &Session, model: &ConsoleModel) -> Option<Fact> {
+    let display = model.display.as_ref().filter(|_| is_wanted(session));
+    display.and_then(ParticipantDisplayHealth::missing).map(|missing| fact("display", missing, TextRole::Alarm))
 }
 
 /// Card with the recipes of all dishes during a pause, for the person who plays the participant at this keyboard. As in
@@ -140,6 +148,7 @@ fn after(session: &Session, model: &ConsoleModel) -> Card {
     };
     let mut facts = vec![fact("participant", place(session), TextRole::Strong)];
     facts.extend(left_out(session, model));
+    facts.extend(missing_page(session, model));
     facts.extend([
         fact("orders", format!("{} served", session.served.len()), TextRole::Text),
         fact("presses", format!("{human} by the human, {robot} by the robot"), TextRole::Text),

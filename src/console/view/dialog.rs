@@ -46,6 +46,10 @@ pub fn draw(brush: &mut Painter, screen: Rect, regions: &PanelAreas, session: &S
             let yes = yes_keys(model, &KeyAction::EndTrial);
             ask(brush, screen, "End the trial?", &["A trial that was ended cannot be resumed."], &yes);
         }
+        Some(Dialog::EndTutorial) => {
+            let lines = ["The participant does not see its other pages,", "and cannot go back to it."];
+            ask(brush, screen, "End the tutorial?", &lines, "y");
+        }
         Some(Dialog::Quit) => {
             let lines: &[&str] = match session.phase {
                 _ if model.lesson.is_some() => &["The training ends without a saved result."],

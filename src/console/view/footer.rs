@@ -149,12 +149,11 @@ pub fn message(brush: &mut Painter, regions: &PanelAreas, session: &Session, mod
     if let Some(check) = session.calibration.as_ref().filter(|check| check.result.is_none()) {
         let (at, all) = (check.shown.map_or(0, |(index, _)| index + 1), check.targets.len());
         let who = match session.spec.participant.kind {
-            ParticipantKind::Simulated => "the simulated participant looks",
-            ParticipantKind::Keyboard | ParticipantKind::Display | ParticipantKind::External => {
-                "ask the participant to look"
-            }
+            ParticipantKind::Simulated => "the simulated participant looks at the cross",
+            ParticipantKind::Display => "ask the participant to look at the dot on the page",
+            ParticipantKind::Keyboard | ParticipantKind::External => "ask the participant to look at the cross",
         };
-        let text = format!(" Gaze check, target {at} of {all}: {who} at the cross; esc ends it ");
+        let text = format!(" Gaze check, target {at} of {all}: {who}; esc ends it ");
         let strong = brush.style(TextRole::Strong);
         brush.text(area.x + 1, area.y, area.width - 1, &text, strong);
         return;

@@ -93,6 +93,7 @@ fn too_small(brush: &mut Painter, session: &Session, model: &ConsoleModel) {
     let question = match &model.dialog {
         Some(Dialog::Quit) => "Quit tomcom? y or the same key again: yes; any other key: no",
         Some(Dialog::EndTrial) => "End the trial? y or the same key again: yes; any other key: no",
+        Some(Dialog::EndTutorial) => "End the tutorial? y: yes; any other key: no",
         Some(Dialog::Help(_)) => "The terminal is too small for the help; any key closes it",
         Some(Dialog::Pick(_) | Dialog::Palette(_)) => "The terminal is too small for the list; esc closes it",
         Some(Dialog::Send(_)) => "Send the clicked signal? enter sends, esc cancels",

@@ -25,6 +25,7 @@ use tomcom_session::probes::{ProbeAnswer, ProbeQuestion, StartedProbe};
 use tomcom_session::protocol::{ItemAnswer, StudyProtocolState};
 use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::settings::WizardVisibility;
+use tomcom_session::wall_display::AnswerDevice;
 use tomcom_session::{Session, TrialPhase};
 
 /// Draws the sheet of the session's present phase, if that phase has one.
@@ -46,7 +47,7 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
         FormContent::Questions(questionnaire) => {
             draw_questions(pen, screen, &where_, questionnaire, protocol, (session, model))
         }
-        FormContent::Failed => draw_failed(pen, screen, &where_, session, model.waiver),
+        FormContent::Failed => draw_failed(pen, screen, &where_, session, model),
     }
 }
 
@@ -63,7 +64,7 @@ fn draw_steps(
     protocol: &StudyProtocolState,
     (session, model): (&Session, &ConsoleModel),
 ) {
-    let mut page = Page::new(screen);
+    let mut page = Page::of_session(screen, session, model);
     let open = protocol.ticks.iter().position(|done| !done);
     for (index, step) in steps.iter().enumerate() {
         let is_done = protocol.ticks.get(index) == Some(&true);
@@ -100,11 +101,8 @@ fn draw_tutorial(
     tutorial: &Tutorial,
     (session, model): (&Session, &ConsoleModel),
 ) {
-    let mut page = Page::new(screen);
+    let mut page = Page::of_session(screen, session, model);
     let Some((_, state)) = session.tutorial() else { return };
-    if let Some(address) = model.display.as_ref().and_then(ParticipantDisplayHealth::to_open) {
-        page.text(0, &format!("the participant's page is not connected: {address}"), TextRole::Alarm);
-    }
     for (index, step) in tutorial.steps.iter().enumerate() {
         let is_shown = index == state.step && !state.is_over;
         let role = match (is_shown, state.done.get(index)) {
@@ -145,9 +143,12 @@ fn draw_questions(
     (session, model): (&Session, &ConsoleModel),
 ) {
     let items = questionnaire.items.len();
-    let mut page = Page::new(screen);
+    let mut page = Page::of_session(screen, session, model);
     if let Some(item) = questionnaire.items.get(protocol.item) {
         page.text(0, &format!("item {} of {items}", protocol.item + 1), TextRole::Quiet);
+        if is_wanted(session) && session.spec.display.questionnaire == AnswerDevice::Display {
+            page.text(0, "The participant answers on the page. The keys answer here in their place.", TextRole::Quiet);
+        }
         page.space();
         page.text(0, &item.text, TextRole::Strong);
         page.space();
@@ -259,10 +260,11 @@ fn scale(page: &mut Page, of: &RatingScale, given: Option<&AnswerValue>) {
     page.cells(0, vec![(&anchors, TextRole::Quiet)]);
 }
 
-fn draw_failed(pen: &mut Pen, screen: Rect, where_: &str, session: &Session, waiver: Option<usize>) {
+fn draw_failed(pen: &mut Pen, screen: Rect, where_: &str, session: &Session, model: &ConsoleModel) {
+    let waiver = model.waiver;
     let Some((step, protocol)) = session.step() else { return };
     let (Some(criterion), Some(practice)) = (step.criterion, &protocol.practice) else { return };
-    let mut page = Page::new(screen);
+    let mut page = Page::of_session(screen, session, model);
     let required = count(criterion.orders, "order", "orders");
     let required = match criterion.error_rate {
         None => format!("Required: {required} served."),
@@ -297,6 +299,9 @@ pub fn draw_question(question: &StartPrompt, notice: Option<&str>, theme: Theme,
     let screen = frame.area();
     let mut brush = Painter::new(frame.buffer_mut(), theme);
     let mut page = Page::new(screen);
+    if let Some(missing) = &question.missing_page {
+        page.head(missing);
+    }
     for paragraph in &question.text {
         page.text(0, paragraph, TextRole::Text);
         page.space();
@@ -337,6 +342,8 @@ type PagePart = (u16, String, TextRole);
 pub(super) struct Page {
     columns: u16,
     lines: Vec<Vec<PagePart>>,
+    /// Number of first lines that stay where they are if the page is longer than the screen.
+    heads: usize,
     /// Index of the line that must be visible if the page is longer than the screen.
     focus: usize,
     keys: Vec<(usize, KeyChord)>,
@@ -346,6 +353,24 @@ impl Page {
     /// An empty text page that fits this screen area.
     pub(super) fn new(screen: Rect) -> Page {
         Page { columns: screen.width.saturating_sub(4).min(WIDEST).saturating_sub(4), ..Page::default() }
+    }
+
+    /// The page of a sheet of the session. While the participant's page is wanted and none is connected, it begins with
+    /// what is to be opened.
+    pub(super) fn of_session(screen: Rect, session: &Session, model: &ConsoleModel) -> Page {
+        let mut page = Page::new(screen);
+        let display = model.display.as_ref().filter(|_| is_wanted(session));
+        if let Some(missing) = display.and_then(ParticipantDisplayHealth::missing) {
+            page.head(&missing);
+        }
+        page
+    }
+
+    /// Adds an alarm to the top of the page, where it stays.
+    fn head(&mut self, text: &str) {
+        self.text(0, text, TextRole::Alarm);
+        self.space();
+        self.heads = self.lines.len();
     }
 
     /// Width of the page's text, in columns.
@@ -399,13 +424,14 @@ impl Page {
         let room = usize::from(inside.height.saturating_sub(3));
         let last = self.lines.len().saturating_sub(room);
         let from = (self.focus + 2).saturating_sub(room).min(last);
-        for (row, line) in self.lines.iter().skip(from).take(room).enumerate() {
-            let (x, y) = (inside.x + 1, inside.y + 1 + row as u16);
+        let shown = (0..self.heads).chain(self.heads + from..self.lines.len()).take(room);
+        for (row, index) in shown.enumerate() {
+            let (line, x, y) = (&self.lines[index], inside.x + 1, inside.y + 1 + row as u16);
             let end = line.iter().fold(x, |_, (indent, text, role)| {
                 let style = brush.style(*role);
                 brush.text(x + indent, y, self.columns - indent, text, style)
             });
-            let key = self.keys.iter().find(|(line, _)| *line == from + row);
+            let key = self.keys.iter().find(|(line, _)| *line == index);
             if let Some((_, chord)) = key.filter(|_| pen.with_keys) {
                 brush.key_target(x, y, end, *chord);
             }
@@ -434,13 +460,8 @@ pub(super) fn hide_probe(brush: &mut Painter, area: Rect, session: &Session, mod
 }
 
 pub(super) fn draw_probe(pen: &mut Pen, screen: Rect, open: &StartedProbe, session: &Session, model: &ConsoleModel) {
-    let mut page = Page::new(screen);
+    let mut page = Page::of_session(screen, session, model);
     let who = answerer(session, model);
-    if let Some(address) =
-        model.display.as_ref().and_then(ParticipantDisplayHealth::to_open).filter(|_| is_wanted(session))
-    {
-        page.text(0, &format!("the participant's page is not connected: {address}"), TextRole::Alarm);
-    }
     let question =
         open.shown.filter(|_| open.closed.is_none()).and_then(|shown| Some((shown, open.questions.get(shown)?)));
     match question {

@@ -37,16 +37,9 @@ pub(super) struct ParticipantDisplay {
 impl ParticipantDisplay {
     /// The participant's display of the operator's station, if there is one, with the display's state for the wizard.
     pub fn at(station: &OperatorStation) -> (Option<ParticipantDisplay>, Option<ParticipantDisplayHealth>) {
-        let health = |display: &DisplayServer| ParticipantDisplayHealth {
-            url: display.url(),
-            code: display.code().map(str::to_string),
-            ..ParticipantDisplayHealth::default()
-        };
-        let display = station.display.server();
-        (
-            display.map(|display| ParticipantDisplay { screen: display.screen(), shown: None, hand: None, told: None }),
-            display.map(health),
-        )
+        let display = station.display.server().map(DisplayServer::screen);
+        let display = display.map(|screen| ParticipantDisplay { screen, shown: None, hand: None, told: None });
+        (display, station.display.health())
     }
 
     /// Sends the part of the participant's page that stays the same during this session.

@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use crate::console::preflight::ParticipantDisplayHealth;
 use crate::run::error::LiveError;
 use tomcom_core::base::time::SessionTime;
 pub(in crate::run) use tomcom_devices::display::PageInput;
@@ -36,6 +37,22 @@ impl StationDisplay {
     /// The server of the participant's display; `None` if the session has no display.
     pub fn server(&self) -> Option<&DisplayServer> {
         self.0.as_ref()
+    }
+
+    /// State of the participant's display for the wizard, before a page is connected; `None` if the session has no display.
+    pub fn health(&self) -> Option<ParticipantDisplayHealth> {
+        self.0.as_ref().map(|display| ParticipantDisplayHealth {
+            url: display.url(),
+            code: display.code().map(str::to_string),
+            ..ParticipantDisplayHealth::default()
+        })
+    }
+
+    /// A function that says, whenever it is called, what is to be opened, while no page is connected.
+    pub fn missing_page(&self) -> Box<dyn Fn() -> Option<String>> {
+        let screen = self.0.as_ref().map(DisplayServer::screen);
+        let Some((health, screen)) = self.health().zip(screen) else { return Box::new(|| None) };
+        Box::new(move || health.missing().filter(|_| screen.counts().page.is_none()))
     }
 
     /// Lets the participant's page ask for consent to `text`; returns whether a page is connected.

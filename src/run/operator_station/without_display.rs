@@ -28,6 +28,11 @@ impl StationDisplay {
         Ok(StationDisplay {})
     }
 
+    /// Says nothing, since this build has no page that could be missing.
+    pub fn missing_page(&self) -> Box<dyn Fn() -> Option<String>> {
+        Box::new(|| None)
+    }
+
     /// Does nothing, since this build has no page that could ask for consent.
     pub fn ask_consent(&self, _: &Session, _: &str) -> bool {
         false

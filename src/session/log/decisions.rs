@@ -107,6 +107,9 @@ pub struct ExclusionRecord {
     pub reason: String,
     /// UTC, RFC 3339.
     pub at: String,
+    /// Whether it was made about all recordings of the participant at once.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub of_participant: bool,
 }
 
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -142,6 +145,19 @@ pub fn is_excluded(log: &mut LogReader) -> FileResult<bool> {
 /// Records whether analyses count a closed recording. It is an error if the recording is being written or is continued
 /// by a later part, or if it is to be included although it is not excluded.
 pub fn rule(recording: &Path, excluded: bool, reason: &str) -> Result<ExclusionRecord, DecisionError> {
+    decide(
+        recording,
+        ExclusionRecord { excluded, reason: reason.to_string(), at: String::new(), of_participant: false },
+    )
+}
+
+/// Likewise, as one of all recordings of the participant.
+pub fn rule_participant(recording: &Path, excluded: bool, reason: &str) -> Result<ExclusionRecord, DecisionError> {
+    decide(recording, ExclusionRecord { excluded, reason: reason.to_string(), at: String::new(), of_participant: true })
+}
+
+fn decide(recording: &Path, ruling: ExclusionRecord) -> Result<ExclusionRecord, DecisionError> {
+    let (excluded, reason) = (ruling.excluded, &ruling.reason);
     check_reason(reason, !excluded)?;
     let mut log = LogReader::open(recording)?;
     let folder = &log.folder().to_path_buf();
@@ -152,7 +168,7 @@ pub fn rule(recording: &Path, excluded: bool, reason: &str) -> Result<ExclusionR
         let found = format!("no exclusion of {}", recording.display());
         return Err(DecisionError::Unfit { found, remedy: "a recording that is excluded".to_string() });
     }
-    let ruling = ExclusionRecord { excluded, reason: reason.to_string(), at: WallTime::now().rfc3339() };
+    let ruling = ExclusionRecord { at: WallTime::now().rfc3339(), ..ruling };
     all.ruling.push(ruling.clone());
     write_decisions(&folder.join(EXCLUSION_NAME), &all)?;
     Ok(ruling)

@@ -19,7 +19,8 @@ use crate::TimestampedEvent;
 use crate::files::file_error::FileError;
 
 pub use decisions::{
-    CORRECTION_NAME, DecisionError, EXCLUSION_NAME, ExclusionRecord, correct, corrected_code, is_excluded, rule, ruling,
+    CORRECTION_NAME, DecisionError, EXCLUSION_NAME, ExclusionRecord, correct, corrected_code, is_excluded, rule,
+    rule_participant, ruling,
 };
 pub use lock::{CODES_LOCK, LOCK_NAME, LockHolder, RecordingLock};
 pub use reader::{LogEnding, LogLine, LogPlace, LogReader, MAX_LINE, at_line, first_line, read_header};

@@ -12,8 +12,8 @@ mod study;
 
 use crate::person_code;
 pub use crate::plan::study::{
-    NextRecording, ParticipantProgress, PlanRecording, PlannedTrial, PlannedTrialProgress, RecordingOutcome, Study,
-    TrialAttempt, WantedRecording,
+    NextRecording, ParticipantProgress, PhaseStand, PlanRecording, PlannedTrial, PlannedTrialProgress,
+    RecordingOutcome, Study, TrialAttempt, WantedRecording,
 };
 use crate::protocol::StudyPhase;
 pub use crate::questionnaire::{
@@ -300,6 +300,9 @@ impl PlanSpec {
     }
 }
 
+/// End of the name under which a tutorial alone is recorded.
+pub(crate) const TUTORIAL_ALONE: &str = "-tutorial";
+
 /// Position of a recording in its study plan, and its phases; part of the settings of every recording of a plan.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -393,13 +396,19 @@ impl PlanPosition {
         matches!(self.phases[..], [PhaseSpec::Tutorial { .. }])
     }
 
-    /// "trial 1/2", "familiarisation".
+    /// Name of the plan to which the recording belongs; a tutorial alone is recorded under a name of its own.
+    pub fn plan_of_study(&self) -> &str {
+        let own = self.plan.strip_suffix(TUTORIAL_ALONE).filter(|_| self.is_tutorial_alone());
+        own.unwrap_or(&self.plan)
+    }
+
+    /// "trial 1/2", "practice".
     pub fn label(&self) -> String {
         let again = if self.attempt > 1 { format!(", attempt {}", self.attempt) } else { String::new() };
         match self.period {
             Some(period) => format!("trial {period}/{}{again}", self.periods),
             None if self.is_tutorial_alone() => "tutorial".to_string(),
-            None => format!("familiarisation{again}"),
+            None => format!("practice{again}"),
         }
     }
 }

@@ -1,13 +1,13 @@
 //! A study: its plan with session settings and questionnaires, the settings of each recording, and the progress of
 //! participants, which follows from the recordings alone, so that the next step is correct after a crash at any time.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 use serde_json::Value;
 
 use crate::SessionSpec;
-use crate::plan::{PhaseSpec, PlanPosition, PlanSpec, PracticeCriterion, StartingGroup};
+use crate::plan::{PhaseSpec, PlanPosition, PlanSpec, PracticeCriterion, StartingGroup, TUTORIAL_ALONE};
 use crate::protocol::ProtocolEvent;
 use crate::questionnaire::Questionnaire;
 use crate::settings::{GazeSource, ParticipantKind, WizardVisibility};
@@ -90,6 +90,12 @@ impl Study {
         practice.into_iter().chain(trials).map(|(period, condition)| PlannedTrial { period, condition }).collect()
     }
 
+    /// After which a planned trial ends, of both agents.
+    fn presses(&self, slot: PlannedTrial) -> u32 {
+        let practice = self.plan.familiarisation.as_ref().filter(|_| slot.period.is_none());
+        practice.map_or(self.session.trial.presses, |practice| practice.presses)
+    }
+
     /// Of a recording with people, and the number of its trial.
     pub fn settings(&self, wanted: WantedRecording) -> (SessionSpec, u64) {
         let slots = self.slots(wanted.participant);
@@ -144,7 +150,7 @@ impl Study {
         let mut spec = self.session.clone();
         spec.participant.code = code.to_string();
         spec.step = Some(PlanPosition {
-            plan: format!("{}-tutorial", self.plan.name),
+            plan: format!("{}{TUTORIAL_ALONE}", self.plan.name),
             digest: self.digest.clone(),
             participant: 0,
             group: String::new(),
@@ -305,9 +311,51 @@ pub struct PlanRecording {
     pub step: PlanPosition,
     pub consent: bool,
     pub instructed: bool,
-    /// Of both agents in the trial.
+    /// Of both agents in the trial, while it ran.
     pub presses: u32,
+    pub stand: PhaseStand,
+    /// Why the practice criterion was waived, if it was.
+    pub waived: Option<String>,
+    /// Why the recording is left out of the analysis, whatever else is true of it.
+    pub excluded: Option<String>,
+    /// Names of the questionnaires before the trial whose answers are final.
+    pub answered: BTreeSet<String>,
     pub outcome: RecordingOutcome,
+}
+
+/// How far a recording is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PhaseStand {
+    /// Number of the last phase that was begun, from 1; 0: none was.
+    pub phase: usize,
+    pub trial_over: bool,
+    /// Items of the last phase's questionnaire that were answered or skipped.
+    pub items: usize,
+}
+
+impl PlanRecording {
+    /// Where the recording ended: "the trial is over after 20 of 20 presses; of the questionnaire "Workload" 1 of 4 items
+    /// are answered". `planned`: the presses after which the trial ends.
+    fn ended_where(&self, planned: u32) -> String {
+        let presses = format!("{} of {planned} presses", self.presses);
+        let trial = match (self.stand.trial_over, self.presses) {
+            (true, _) => format!("the trial is over after {presses}"),
+            (false, 0) => "the trial has no press".to_string(),
+            (false, _) => format!("the trial has {presses}"),
+        };
+        let phase = self.stand.phase.checked_sub(1).and_then(|index| self.step.phases.get(index));
+        let within = match phase {
+            None | Some(PhaseSpec::Trial | PhaseSpec::Familiarisation) => return trial,
+            Some(PhaseSpec::Instruction { .. }) => "the instruction is not done".to_string(),
+            Some(PhaseSpec::Tutorial { .. }) => "the tutorial is not done".to_string(),
+            Some(PhaseSpec::Debriefing { .. }) => "the debriefing is not done".to_string(),
+            Some(PhaseSpec::Questionnaire { questionnaire }) => {
+                let (title, items) = (&questionnaire.title, questionnaire.items.len());
+                format!("of the questionnaire \"{title}\" {} of {items} items are answered", self.stand.items)
+            }
+        };
+        format!("{trial}; {within}")
+    }
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -359,8 +407,18 @@ pub struct TrialAttempt {
     /// Name of its folder; of several parts, the last one's.
     pub recording: String,
     pub attempt: u32,
-    /// Of both agents in the trial.
+    /// Of both agents in the trial, while it ran.
     pub presses: u32,
+    pub trial_over: bool,
+    /// How far the recording is, in words.
+    #[serde(skip)]
+    pub ended_where: String,
+    /// Why the practice criterion was waived, if it was.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub waived: Option<String>,
+    /// Why the recording is left out of the analysis, whatever else is true of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub excluded: Option<String>,
     pub outcome: RecordingOutcome,
     /// Whether it was recorded under another version of the plan.
     pub other_version: bool,
@@ -382,6 +440,9 @@ pub struct ParticipantProgress {
     pub consent: bool,
     #[serde(skip)]
     pub instructed: bool,
+    /// Names of the questionnaires before the trials that the participant has answered, whatever became of the trial.
+    #[serde(skip)]
+    pub answered: BTreeSet<String>,
     pub steps: Vec<PlannedTrialProgress>,
     pub next: NextRecording,
 }
@@ -408,11 +469,26 @@ impl ParticipantProgress {
             steps.iter().enumerate().find_map(|(index, stand)| stand.next(index)).unwrap_or(NextRecording::Finished);
         let consent = own.iter().any(|made| made.consent);
         let instructed = own.iter().any(|made| made.instructed);
-        Ok(ParticipantProgress { code, participant, group, consent, instructed, steps, next })
+        let answered = own.iter().flat_map(|made| made.answered.iter().cloned()).collect();
+        Ok(ParticipantProgress { code, participant, group, consent, instructed, answered, steps, next })
     }
 
-    pub fn wanted(&self, slot: usize, attempt: u32) -> WantedRecording {
-        WantedRecording { participant: self.participant, slot, attempt, instructed: self.instructed }
+    /// Settings of a recording with the participant, and the number of its trial. What is asked once before the trials is
+    /// not asked again.
+    pub fn settings(&self, study: &Study, slot: usize, attempt: u32) -> (SessionSpec, u64) {
+        let (participant, instructed) = (self.participant, self.instructed);
+        let (mut spec, trial) = study.settings(WantedRecording { participant, slot, attempt, instructed });
+        if let Some(step) = &mut spec.step {
+            let of_trial = step.phases.iter().position(|phase| *phase == PhaseSpec::Trial).unwrap_or(0);
+            let is_open = |phase: &PhaseSpec| match phase {
+                PhaseSpec::Questionnaire { questionnaire } => !self.answered.contains(&questionnaire.name),
+                _ => true,
+            };
+            let after = step.phases.split_off(of_trial);
+            step.phases.retain(is_open);
+            step.phases.extend(after);
+        }
+        (spec, trial)
     }
 
     /// Makes this planned trial the next one, even if it is done.
@@ -427,6 +503,12 @@ impl ParticipantProgress {
     pub fn excluded(&self) -> impl Iterator<Item = (usize, &TrialAttempt)> {
         let last = self.steps.iter().enumerate().filter_map(|(slot, stand)| Some((slot, stand.recordings.last()?)));
         last.filter(|(_, last)| matches!(last.outcome, RecordingOutcome::Excluded { .. }))
+    }
+
+    /// Whether a trial, practice aside, is complete and not excluded.
+    pub fn has_counting_trial(&self) -> bool {
+        let mut trials = self.steps.iter().filter(|stand| stand.slot.period.is_some());
+        trials.any(|stand| stand.recordings.last().is_some_and(|last| last.outcome == RecordingOutcome::Complete))
     }
 
     /// Number of completed trials.
@@ -444,6 +526,10 @@ impl PlannedTrialProgress {
             recording: made.recording.clone(),
             attempt: made.step.attempt,
             presses: made.presses,
+            trial_over: made.stand.trial_over,
+            ended_where: made.ended_where(study.presses(slot)),
+            waived: made.waived.clone(),
+            excluded: made.excluded.clone(),
             outcome: made.outcome.clone(),
             other_version: made.step.digest != study.digest,
             recorded_as: made.recorded_as.clone(),

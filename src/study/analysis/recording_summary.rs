@@ -153,6 +153,32 @@ impl RecordingKind {
     }
 }
 
+/// The place of a recording in a study plan; of the fields of the header's step the ones that a list shows.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ListedPlace {
+    pub plan: String,
+    /// Number of the trial, from 1; null for practice.
+    #[serde(default)]
+    pub period: Option<u32>,
+    pub periods: u32,
+    pub attempt: u32,
+}
+
+impl ListedPlace {
+    pub fn from_spec(spec: &SessionSpec) -> Option<ListedPlace> {
+        let step = spec.step.as_ref()?;
+        let (plan, period, periods, attempt) = (step.plan.clone(), step.period, step.periods, step.attempt);
+        Some(ListedPlace { plan, period, periods, attempt })
+    }
+
+    /// After the kind of the recording: " 2/3, attempt 2, of main-study".
+    fn words(&self) -> String {
+        let trial = self.period.map_or(String::new(), |period| format!(" {period}/{}", self.periods));
+        let again = if self.attempt > 1 { format!(", attempt {},", self.attempt) } else { String::new() };
+        format!("{trial}{again} of {}", self.plan)
+    }
+}
+
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ListedRecording {
     pub recording: String,
@@ -166,6 +192,8 @@ pub struct ListedRecording {
     /// Number of the human's presses that were errors; null where errors are not counted.
     pub errors: Option<u64>,
     pub kind: Option<RecordingKind>,
+    /// Null without a plan.
+    pub place: Option<ListedPlace>,
     pub state: RecordingState,
     pub reason: Option<String>,
 }
@@ -212,7 +240,11 @@ impl ListedRecording {
         let minutes = |seconds: f64| format!("{}:{:02}", seconds as u64 / 60, seconds as u64 % 60);
         [
             or_dash(self.code.clone()),
-            or_dash(self.kind.map(|kind| kind.name().to_string())),
+            or_dash(
+                self.kind.map(|kind| {
+                    kind.name().to_string() + &self.place.as_ref().map_or(String::new(), ListedPlace::words)
+                }),
+            ),
             or_dash(self.arm.map(|arm| arm.title().to_string())),
             or_dash(self.date.as_deref().map(|date| date.chars().take(16).collect::<String>().replace('T', " "))),
             or_dash(self.trial_s.map(minutes)),

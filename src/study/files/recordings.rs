@@ -12,7 +12,8 @@ use tomcom_session::header::{FORMAT, PreviousPart};
 use tomcom_session::log::{
     LOG_NAME, LogEnding, LogReader, MAX_LINE, RecordingLock, SameLogs, first_line, header_digest, read_header, ruling,
 };
-use tomcom_session::plan::{PlanPosition, PlanRecording, RecordingOutcome};
+use tomcom_session::plan::{PhaseSpec, PhaseStand, PlanPosition, PlanRecording, RecordingOutcome};
+use tomcom_session::probes::ProbeEvent;
 use tomcom_session::protocol::{PhaseProgress, ProtocolEvent, StudyPhase};
 use tomcom_session::tutorial::TutorialEvent;
 use tomcom_session::{Event, TimestampedEvent};
@@ -158,12 +159,16 @@ struct PartProgress {
     /// Steps of the last phase that were ticked or, in a later part, unticked.
     ticks: BTreeMap<usize, bool>,
     tutorial_over: bool,
-    /// Whether the answers of the last phase were confirmed.
-    confirmed: bool,
+    /// Items of the last phase that were answered or skipped.
+    items: BTreeSet<String>,
+    /// Numbers of the phases whose answers were confirmed.
+    confirmed: BTreeSet<usize>,
+    /// Whether the trial's clock goes; a press before and after is no press of the trial.
+    runs: bool,
     presses: u32,
     trial_over: bool,
     criterion_failed: bool,
-    criterion_waived: bool,
+    criterion_waived: Option<String>,
     aborted: Option<String>,
     /// Whether an event excludes the recording from the analysis or includes it again, and the reason of an exclusion.
     excluded: Option<Option<String>>,
@@ -173,23 +178,30 @@ struct PartProgress {
 impl PartProgress {
     fn follow(&mut self, event: &Event) {
         match event {
-            Event::Press { .. } => self.presses += 1,
-            Event::TrialEnded { .. } => self.trial_over = true,
-            Event::TrialAborted { reason } => self.aborted = Some(reason.clone()),
+            Event::Press { .. } => self.presses += u32::from(self.runs),
+            Event::TrialStarted | Event::TrialResumed | Event::Probe(ProbeEvent::Ended { .. }) => self.runs = true,
+            Event::TrialPaused | Event::Probe(ProbeEvent::Begun { .. }) => self.runs = false,
+            Event::TrialEnded { .. } => (self.runs, self.trial_over) = (false, true),
+            Event::TrialAborted { reason } => (self.runs, self.aborted) = (false, Some(reason.clone())),
             Event::TrialExcluded { reason } => self.excluded = Some(Some(reason.clone())),
             Event::TrialIncluded => self.excluded = Some(None),
             Event::SessionEnded => self.ended = true,
             Event::Protocol(ProtocolEvent::ConsentGiven { .. }) => self.consent = true,
             Event::Protocol(ProtocolEvent::PhaseStarted { phase, number }) => {
-                (self.phase, self.confirmed) = (*number, false);
+                self.phase = *number;
                 self.ticks.clear();
+                self.items.clear();
                 self.instructed |= !matches!(phase, StudyPhase::Instruction | StudyPhase::Tutorial);
             }
             Event::Protocol(ProtocolEvent::Ticked { step, done }) => drop(self.ticks.insert(*step, *done)),
             Event::Protocol(ProtocolEvent::Tutorial(TutorialEvent::Ended { .. })) => self.tutorial_over = true,
-            Event::Protocol(ProtocolEvent::AnswersConfirmed) => self.confirmed = true,
+            Event::Protocol(ProtocolEvent::ItemAnswered { item, .. } | ProtocolEvent::ItemSkipped { item }) => {
+                self.items.insert(item.clone());
+            }
+            // A part that continues another one in the middle of a phase does not name it.
+            Event::Protocol(ProtocolEvent::AnswersConfirmed) => drop(self.confirmed.insert(self.phase)),
             Event::Protocol(ProtocolEvent::CriterionChecked { met, .. }) => self.criterion_failed = !met,
-            Event::Protocol(ProtocolEvent::CriterionWaived { .. }) => self.criterion_waived = true,
+            Event::Protocol(ProtocolEvent::CriterionWaived { reason }) => self.criterion_waived = Some(reason.clone()),
             _ => {}
         }
     }
@@ -260,6 +272,7 @@ impl Part {
         // The last part of the recording that contains a decision about exclusion counts.
         let excluded = all.iter().find_map(|part| part.told.excluded.clone()).flatten();
         let aborted = all.iter().find_map(|part| part.told.aborted.as_ref());
+        let waived = all.iter().find_map(|part| part.told.criterion_waived.clone());
         let void = |reason: &str| RecordingOutcome::Void { reason: reason.to_string() };
         let outcome = if !self.told.ended && self.running {
             RecordingOutcome::Running
@@ -267,13 +280,16 @@ impl Part {
             RecordingOutcome::Open
         } else if let Some(reason) = aborted {
             void(&format!("aborted ({reason})"))
-        } else if any(|part| part.criterion_failed) && !any(|part| part.criterion_waived) {
+        } else if any(|part| part.criterion_failed) && waived.is_none() {
             void("criterion not met")
         } else if !any(|part| part.trial_over) || !self.is_last_phase_done(&all) {
             RecordingOutcome::Open
         } else {
-            excluded.map_or(RecordingOutcome::Complete, |reason| RecordingOutcome::Excluded { reason })
+            excluded.clone().map_or(RecordingOutcome::Complete, |reason| RecordingOutcome::Excluded { reason })
         };
+        let phase = all.iter().map(|part| part.told.phase).find(|phase| *phase > 0).unwrap_or(0);
+        let items: BTreeSet<&String> = since(&all, phase).iter().flat_map(|part| &part.told.items).collect();
+        let stand = PhaseStand { phase, trial_over: any(|part| part.trial_over), items: items.len() };
         PlanRecording {
             recording: name.to_string(),
             code: self.code.clone(),
@@ -282,24 +298,61 @@ impl Part {
             consent: any(|part| part.consent),
             instructed: any(|part| part.instructed),
             presses: all.iter().map(|part| part.told.presses).sum(),
+            stand,
+            waived,
+            excluded,
+            answered: self.answered_before_trial(&all),
             outcome,
         }
     }
 }
 
+/// The parts, the last one first, back to the one in which this phase began.
+fn since<'p, 'a>(parts: &'p [&'a Part], phase: usize) -> &'p [&'a Part] {
+    let first = parts.iter().position(|part| part.told.phase == phase);
+    first.map_or(&[], |first| &parts[..=first])
+}
+
+/// Numbers of the phases whose answers are confirmed in these parts, the last one first.
+fn confirmed(parts: &[&Part]) -> BTreeSet<usize> {
+    let mut phase = 0;
+    let mut all = BTreeSet::new();
+    for Part { told, .. } in parts.iter().rev() {
+        // What a part says before it names a phase belongs to the phase that the part before it has left open.
+        all.extend(told.confirmed.iter().map(|number| if *number == 0 { phase } else { *number }));
+        phase = if told.phase > 0 { told.phase } else { phase };
+    }
+    all
+}
+
 impl Part {
+    /// Names of the questionnaires before the trial whose answers are confirmed in these parts.
+    fn answered_before_trial(&self, parts: &[&Part]) -> BTreeSet<String> {
+        let confirmed = confirmed(parts);
+        let phases = self.step.phases.iter().zip(1..).take_while(|(phase, _)| **phase != PhaseSpec::Trial);
+        let answered = phases.filter_map(|(phase, number)| match phase {
+            PhaseSpec::Questionnaire { questionnaire } if confirmed.contains(&number) => {
+                Some(questionnaire.name.clone())
+            }
+            _ => None,
+        });
+        answered.collect()
+    }
+
     /// Whether the last phase of the plan's step is done, after these parts, the last one first.
     fn is_last_phase_done(&self, parts: &[&Part]) -> bool {
-        let since = parts.iter().position(|part| part.told.phase == self.step.phases.len());
-        let (Some(first), Some(last)) = (since, self.step.phases.last()) else { return false };
-        let since = &parts[..=first];
+        let (Some(last), number) = (self.step.phases.last(), self.step.phases.len()) else { return false };
+        let since = since(parts, number);
+        if since.is_empty() {
+            return false;
+        }
         let mut ticks: BTreeMap<usize, bool> = BTreeMap::new();
         since.iter().rev().for_each(|part| ticks.extend(&part.told.ticks));
         let progress = PhaseProgress {
             ticked: ticks.values().filter(|done| **done).count(),
             tutorial_over: since.iter().any(|part| part.told.tutorial_over),
             trial_over: parts.iter().any(|part| part.told.trial_over),
-            confirmed: since.iter().any(|part| part.told.confirmed),
+            confirmed: confirmed(parts).contains(&number),
         };
         progress.lacks(last).is_none()
     }

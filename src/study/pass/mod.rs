@@ -24,7 +24,7 @@ use crate::files::pool_file::read_frozen;
 use crate::frozen_plan::{FrozenPlan, PreregistrationCheck, RecordedPlan};
 use crate::gathered::GatheredRecordings;
 use crate::kept_cost::KeptCost;
-use crate::pass::reading::{AnalysisScope, RecordedConsent};
+use crate::pass::reading::{AnalysisScope, RecordedConsent, WaivedPractice};
 pub use crate::pass::tell::{describe, describe_arms};
 use crate::planned_trial::{RecordingCopy, missing_trials};
 use crate::study_part::AnalysedRecording;
@@ -35,6 +35,7 @@ use crate::tables::participants::{
 use crate::tables::probe_table::probes;
 use crate::trial_statistics::{DetailTotals, TrialStatistics, arrange};
 use crate::{parallel, report};
+use tomcom_core::base::text::count;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::log::{LogReader, header_digest, rater_codes};
@@ -69,10 +70,18 @@ pub struct NamedRecordings {
 }
 
 impl NamedRecordings {
-    /// Each once, ordered by name, so that the order does not depend on how they are spread over folders.
-    pub fn find(paths: &[PathBuf]) -> Result<NamedRecordings, StudyError> {
-        let GatheredRecordings { paths, copies } = GatheredRecordings::find(paths)?;
-        let mut found: Vec<(PathBuf, String)> = paths.into_iter().map(|path| (path.clone(), name(&path))).collect();
+    /// Each once, ordered by name, so that the order does not depend on how they are spread over folders. `plans`: names of
+    /// the plans whose recordings are meant; empty: all. Errors: several plans have recordings and none is named, or one
+    /// that has none; or two plans have a participant of the same code, of whom tables would make one person.
+    pub fn find(paths: &[PathBuf], plans: &[String]) -> Result<NamedRecordings, StudyError> {
+        let first = paths.first().cloned().unwrap_or_default();
+        let GatheredRecordings { paths, places, copies } = GatheredRecordings::find(paths)?;
+        check_plans(&places, plans).map_err(|(found, remedy)| FileError::from_finding(&first, found, remedy))?;
+        let is_meant = |place: &(String, Option<String>)| {
+            plans.is_empty() || place.1.as_ref().is_some_and(|plan| plans.contains(plan))
+        };
+        let meant = paths.into_iter().zip(&places).filter(|(_, place)| is_meant(place));
+        let mut found: Vec<(PathBuf, String)> = meant.map(|(path, _)| (path.clone(), name(&path))).collect();
         // Recordings from several folders with the same name are identified by their full paths.
         let names: Vec<String> = found.iter().map(|(_, name)| name.clone()).collect();
         for (path, name) in &mut found {
@@ -103,6 +112,41 @@ impl NamedRecordings {
     pub fn number(&self) -> usize {
         self.found.len()
     }
+}
+
+/// What is wrong about the plans of recordings, and what would be right. `places`: code and plan of each recording.
+fn check_plans(places: &[(String, Option<String>)], wanted: &[String]) -> Result<(), (String, String)> {
+    let mut numbers: BTreeMap<&str, u64> = BTreeMap::new();
+    for plan in places.iter().filter_map(|(_, plan)| plan.as_deref()) {
+        *numbers.entry(plan).or_default() += 1;
+    }
+    let one = |(plan, number): (&&str, &u64)| format!("\"{plan}\" ({})", count(*number, "recording", "recordings"));
+    let there = || numbers.iter().map(one).collect::<Vec<_>>().join(", ");
+    if let Some(missing) = wanted.iter().find(|plan| !numbers.contains_key(plan.as_str())) {
+        let found = format!("no recording of the plan \"{missing}\"");
+        let there = if numbers.is_empty() { "these recordings are of no plan".to_string() } else { there() };
+        return Err((found, format!("a plan that has recordings there: {there}")));
+    }
+    if wanted.is_empty() && numbers.len() > 1 {
+        let first = numbers.keys().next().copied().unwrap_or_default();
+        let remedy = format!(
+            "the plan that is meant, such as --plan {first}; plans whose participants are one study, such as those of several \
+             labs, are each named: --plan A --plan B"
+        );
+        return Err((format!("recordings of several plans: {}", there()), remedy));
+    }
+    let mut codes: BTreeMap<&str, &str> = BTreeMap::new();
+    let meant = places.iter().filter_map(|(code, plan)| Some((code.as_str(), plan.as_deref()?)));
+    for (code, plan) in meant.filter(|(_, plan)| wanted.iter().any(|wanted| wanted == plan)) {
+        let other = *codes.entry(code).or_insert(plan);
+        if other != plan {
+            let found = format!("recordings of {code} in the plan \"{other}\" and in the plan \"{plan}\"");
+            let remedy = "codes that differ between the plans (tomcom correct RECORDING --code CODE --why …): one code is one \
+                          participant; or one plan";
+            return Err((found, remedy.to_string()));
+        }
+    }
+    Ok(())
 }
 
 fn name(recording: &Path) -> String {
@@ -148,12 +192,16 @@ fn analyse(
     let (plan, correction) = (RecordedPlan::from_header(&log.header), log.header.correction.clone());
     let digest = header_digest(log.path_of_last_part())?;
     let (tutorial, consent) = (reading::tutorial_answers(log, name)?, reading::consent(path)?);
+    let waived = reading::waived_practice(path)?;
     let (mut trial, mut rows) = (None, Default::default());
     if let Some((own, read)) = reading::read(path, name, extent, raters, kept)? {
         same_kitchen(first, (path, &own))?;
         (trial, rows) = (Some((read.trial, read.details, read.facts)), read.rows);
     }
-    Ok((AnalysedRecording { recording: name.clone(), digest, plan, correction, consent, tutorial, trial }, rows))
+    Ok((
+        AnalysedRecording { recording: name.clone(), digest, plan, correction, consent, tutorial, waived, trial },
+        rows,
+    ))
 }
 
 /// Keeps an analysed recording and its rows in files until all recordings are read; practice recordings have no rows.
@@ -180,6 +228,7 @@ struct CollectedRecordings {
     corrections: Vec<CorrectedRecording>,
     consents: Vec<(String, RecordedConsent)>,
     tutorials: Vec<TutorialQuestionRow>,
+    waived: Vec<WaivedPractice>,
 }
 
 impl CollectedRecordings {
@@ -198,6 +247,7 @@ impl CollectedRecordings {
             .extend(recording.correction.map(|correction| CorrectedRecording { recording: name, correction }));
         self.consents.extend(recording.consent.map(|consent| (recording.recording.clone(), consent)));
         self.tutorials.extend(recording.tutorial);
+        self.waived.extend(recording.waived);
         if let Some((trial, _, facts)) = recording.trial {
             self.kept.insert(trial.recording.clone(), index);
             self.trials.push(trial);
@@ -214,9 +264,18 @@ fn conclude(
     frozen: Option<(String, FrozenPlan)>,
     copies: Vec<RecordingCopy>,
 ) -> Result<(StudySummary, PathBuf), StudyError> {
-    let CollectedRecordings { mut trials, facts, kept, plans, mut corrections, mut consents, mut tutorials } =
-        CollectedRecordings::read(export, number)?;
+    let CollectedRecordings {
+        mut trials,
+        facts,
+        kept,
+        plans,
+        mut corrections,
+        mut consents,
+        mut tutorials,
+        mut waived,
+    } = CollectedRecordings::read(export, number)?;
     arrange(&mut trials);
+    waived.sort();
     let practice = (plans.len() - trials.len()) as u64;
     consents.sort_by(|(one, a), (other, b)| (&a.started, one).cmp(&(&b.started, other)));
     let consents: Vec<RecordedConsent> = consents.into_iter().map(|(_, consent)| consent).collect();
@@ -229,6 +288,7 @@ fn conclude(
         missing_trials: missing_trials(&plans),
         copies,
         corrections,
+        waived,
         tutorial: TutorialSummary::from_answers(&tutorials),
         ..StudySummary::from_trials(&trials, details, &facts, practice)
     };

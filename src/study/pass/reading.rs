@@ -510,6 +510,55 @@ impl ReplayPass {
     }
 }
 
+/// That the practice ended without its criterion being met and the wizard went on; `None` for trials.
+pub(crate) fn waived_practice(recording: &Path) -> FileResult<Option<WaivedPractice>> {
+    let mut log = LogReader::open(recording)?;
+    let spec = &log.header.session;
+    if spec.step.as_ref().is_none_or(|step| step.criterion.is_none()) {
+        return Ok(None);
+    }
+    let participant = spec.participant.code.clone();
+    let mut result = None;
+    while let Some(line) = log.next_line()? {
+        match line.stamped.event {
+            Event::Protocol(ProtocolEvent::CriterionChecked { orders, presses, errors, .. }) => {
+                result = Some((orders, presses, errors));
+            }
+            Event::Protocol(ProtocolEvent::CriterionWaived { reason }) => {
+                let practice =
+                    |(orders, presses, errors)| WaivedPractice { participant, reason, orders, presses, errors };
+                return Ok(result.map(practice));
+            }
+            _ => {}
+        }
+    }
+    Ok(None)
+}
+
+/// Practice whose criterion was not met, and was waived.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WaivedPractice {
+    pub participant: String,
+    pub reason: String,
+    pub orders: u32,
+    /// Of the participant.
+    pub presses: u32,
+    pub errors: u32,
+}
+
+impl WaivedPractice {
+    /// Those of a study in one sentence; `None` if there are none.
+    pub fn in_words(all: &[WaivedPractice]) -> Option<String> {
+        let one = |one: &WaivedPractice| {
+            let WaivedPractice { participant, reason, orders, presses, errors } = one;
+            format!("{participant} ({reason}; orders {orders}, errors {errors} in presses {presses})")
+        };
+        let named: Vec<String> = all.iter().map(one).collect();
+        (!all.is_empty()).then(|| format!("practice criterion not met, and waived: {}", named.join(", ")))
+    }
+}
+
 /// That with which the recording begins (in its first part).
 pub(crate) fn consent(recording: &Path) -> FileResult<Option<RecordedConsent>> {
     let mut log = LogReader::open(recording)?;

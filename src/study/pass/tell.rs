@@ -4,7 +4,9 @@ use crate::analysis::probe_figures;
 use crate::arm_comparison::StudyArmComparison;
 use crate::effect::{AssistanceEffect, LeftOutParticipant, left_out_in_words};
 use crate::figures::{StudySummary, pairs_in_words};
+use crate::headline::{RATES_AND_RATIO, fewer, mixed_sources, p_value, primary_outcome};
 use crate::live_arms::SignalSenderResults;
+use crate::pass::reading::WaivedPractice;
 use crate::planned_trial::{copies_in_words, in_words};
 use crate::roc::{BootstrapInterval, EQUAL_SIGNALS};
 use tomcom_core::base::text::{count, decimal, percent};
@@ -14,10 +16,15 @@ use tomcom_session::event::TrialEndReason;
 
 pub fn describe(figures: &StudySummary) -> String {
     let totals = &figures.totals;
-    let mut text = format!(
-        "{}\n{} of {}, {}: {} of the human, {} of the robot\n\
+    let mut text = format!("{}\n", figures.title);
+    let outcome = primary_outcome(figures);
+    outcome.iter().for_each(|sentence| text += &format!("{sentence}\n"));
+    if figures.arms.is_some() {
+        text += &format!("{RATES_AND_RATIO}\n");
+    }
+    text += &format!(
+        "{} of {}, {}: {} of the human, {} of the robot\n\
          errors: {} ({} of the presses of both, {} of the human's)\n",
-        figures.title,
         count(figures.trials, "trial", "trials"),
         count(figures.participants, "participant", "participants"),
         count(totals.actions, "press", "presses"),
@@ -56,7 +63,7 @@ pub fn describe(figures: &StudySummary) -> String {
             number(totals.mean_sequence_length),
             number(totals.mean_sequence_length_any_aspect),
             number(totals.mean_recovery_s),
-            if totals.beliefs_from == Some(BeliefSource::Estimate) {
+            if totals.belief_sources.keys().eq([&BeliefSource::Estimate]) {
                 "; beliefs by the assistant's estimate alone"
             } else {
                 ""
@@ -64,6 +71,7 @@ pub fn describe(figures: &StudySummary) -> String {
         ),
         _ => "belief related errors: not known\n".to_string(),
     };
+    text += &mixed_sources(figures).map_or(String::new(), |(words, _)| format!("{words}\n"));
     if let Some(found) = &figures.raters {
         text += &format!(
             "two raters ({}): same cause for {} of {} errors (kappa {}), same false belief for {} of {} (kappa {})\n",
@@ -110,8 +118,8 @@ pub fn describe(figures: &StudySummary) -> String {
     }
     for one in &figures.conditions {
         text += &format!(
-            "  {:<14}{:>11}, errors in {} of the human's presses, {} errors per sequence, {} s per order\n",
-            one.condition.name(),
+            "  {:<18}{:>11}, errors in {} of the human's presses, {} errors per sequence, {} s per order\n",
+            one.condition.title(),
             count(one.trials, "trial", "trials"),
             percent(one.totals.error_rate_human),
             number(one.totals.mean_sequence_length),
@@ -158,6 +166,7 @@ pub fn describe(figures: &StudySummary) -> String {
     for (who, found) in compared {
         text += &found.as_ref().map_or(String::new(), |found| of_similarity(who, found));
     }
+    text += &WaivedPractice::in_words(&figures.waived).map_or(String::new(), |waived| format!("{waived}\n"));
     for one in &figures.left_out {
         text += &format!("left out of the analysis: {}: {}\n", one.recording, one.reason);
     }
@@ -210,7 +219,7 @@ fn of_effect(effect: &AssistanceEffect) -> String {
         return match effect.groups.iter().sum::<usize>() {
             0 => String::new(),
             pairs => format!(
-                "effect of assistance: cannot be computed from {}\n",
+                "the paper's analysis of assistance, secondary: cannot be computed from {}\n",
                 count(pairs as u64, "pair of trials", "pairs of trials")
             ),
         };
@@ -219,15 +228,16 @@ fn of_effect(effect: &AssistanceEffect) -> String {
     let bounded = effect.reduction.filter(|found| found.low.is_finite() && found.high.is_finite());
     let reduction = bounded.map_or(String::new(), |found| {
         format!(
-            ", {:.1} fewer errors per 100 presses of the human ({:.1} to {:.1})",
-            100.0 * found.estimate,
+            "{} errors per 100 presses of the human with assistance, {:.1} % interval {:.1} to {:.1} fewer (Hodges-Lehmann); ",
+            fewer(100.0 * found.estimate),
+            100.0 * found.level,
             100.0 * found.low,
             100.0 * found.high
         )
     });
     let [second, first] = effect.groups;
     format!(
-        "effect of assistance: F({:.0}, {:.0}) = {:.2}, p = {:.4}; r = {:.2}; permutation p = {p}{reduction}\n  \
+        "the paper's analysis of assistance, secondary: {reduction}F({:.0}, {:.0}) = {:.2}, p = {:.4}; r = {:.2}; permutation p = {p}\n  \
          {} participants: {second} assisted in the second trial, {first} in the first{}\n",
         test.df[0],
         test.df[1],
@@ -243,14 +253,9 @@ fn left_out_of(left_out: &[LeftOutParticipant]) -> String {
     left_out_in_words(left_out).map_or(String::new(), |who| format!("; left out: {who}"))
 }
 
-/// A p value as text: "p = 0.123", or "p < 0.001".
-fn p_value(p: f64) -> String {
-    if p < 0.001 { "p < 0.001".to_string() } else { format!("p = {p:.3}") }
-}
-
 pub fn describe_arms(found: &StudyArmComparison) -> String {
     let mut text = format!(
-        "{} per press of the human, by condition (linear mixed model of {} of {}{}):\n",
+        "{} per press of the human, by condition (linear mixed model of {} of {}{}; ratio with 95 % interval, below 1: fewer with the first):\n",
         found.outcome.title(),
         count(found.trials as u64, "trial", "trials"),
         count(found.participants as u64, "participant", "participants"),
@@ -260,8 +265,8 @@ pub fn describe_arms(found: &StudyArmComparison) -> String {
         let [low, high] = one.interval;
         text += &format!(
             "  {} to {}: ratio {:.2} ({low:.2} to {high:.2}), t({:.1}) = {:.2}, {}, corrected by Holm: {}\n",
-            one.arm.name(),
-            one.against.name(),
+            one.arm.title(),
+            one.against.title(),
             one.ratio,
             one.contrast.df,
             one.contrast.t,
@@ -273,8 +278,8 @@ pub fn describe_arms(found: &StudyArmComparison) -> String {
         let verdict = if one.holds { "not worse than" } else { "not shown to be not worse than" };
         text += &format!(
             "  {} is {verdict} {}: upper end of the ratio {:.2}, margin {:.2}\n",
-            one.arm.name(),
-            one.against.name(),
+            one.arm.title(),
+            one.against.title(),
             one.upper,
             one.margin
         );

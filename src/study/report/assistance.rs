@@ -9,6 +9,7 @@ use crate::arm_comparison::{
 use crate::charts;
 use crate::effect::{AssistanceEffect, LeftOutParticipant, left_out_in_words};
 use crate::figures::StudySummary;
+use crate::headline::{fewer, mixed_sources};
 use crate::report::elements::{
     Captions, PageColumn, UNKNOWN, cells, keys, nothing, number, p_sentence, p_value, percent, range, scroll, section,
     with_interval,
@@ -20,7 +21,8 @@ pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials
     let headline = figures.effects.first();
     if figures.conditions.len() > 2 {
         // Charts and tests compare two conditions; a study with more conditions has another section for that.
-        return section("Errors and times", scroll(conditions(captions, &figures.conditions)));
+        let content = html! { (scroll(conditions(captions, &figures.conditions))) (sources_differ(figures)) };
+        return section("Errors and times", content);
     }
     let pictures = pictures(captions, figures, trials);
     if pictures.0.is_empty() {
@@ -28,6 +30,7 @@ pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials
     }
     let content = html! {
         (scroll(conditions(captions, &figures.conditions)))
+        (sources_differ(figures))
         div class="figures" { (pictures) } "\n"
         (headline.map_or_else(nothing, in_words))
         (experience(figures))
@@ -43,6 +46,12 @@ pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials
         }
     };
     section(if figures.conditions.len() > 1 { "Does assistance help?" } else { "Errors and times" }, content)
+}
+
+/// Warning below a table of conditions whose columns about causes cannot be compared; empty if they can.
+fn sources_differ(figures: &StudySummary) -> Markup {
+    let Some((words, true)) = mixed_sources(figures) else { return nothing() };
+    html! { p class="warning" { "C" (&words[1..]) "." } "\n" }
 }
 
 fn pictures(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStatistics]) -> Markup {
@@ -92,14 +101,15 @@ fn in_words(effect: &AssistanceEffect) -> Markup {
     let (Some(reduction), Some(test)) = (effect.reduction, effect.assistance()) else { return nothing() };
     let [estimate, low, high] = [reduction.estimate, reduction.low, reduction.high].map(|value| 100.0 * value);
     let interval = match low.is_finite() && high.is_finite() {
-        true => format!(", interval of {:.1} %: {}", 100.0 * reduction.level, range([low, high], 1)),
+        true => format!(", interval of {:.1} %: {} fewer", 100.0 * reduction.level, range([low, high], 1)),
         false => "; too few participants for an interval".to_string(),
     };
+    let shown = if low < 0.0 && high > 0.0 { ": no difference shown" } else { "" };
     let degrees = format!("{:.0},\u{a0}{:.0}", test.df[0], test.df[1]);
     html! {
         p {
-            "In " (test.n) " participants, assistance reduces errors by " (number(Some(estimate), 1)) " per 100 presses of the human (Hodges-Lehmann"
-            (interval) "). Interaction of period and starting group: F(" (degrees) ")\u{a0}=\u{a0}"
+            "The paper\u{2019}s analysis, secondary: in " (test.n) " participants " (fewer(estimate))
+            " errors per 100 presses of the human with assistance (Hodges-Lehmann" (interval) ")" (shown) ". Interaction of period and starting group: F(" (degrees) ")\u{a0}=\u{a0}"
             (number(Some(test.f), 2)) ", " (p_sentence(Some(test.p))) "."
         }
         "\n"

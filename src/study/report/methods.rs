@@ -4,6 +4,7 @@ use maud::{Markup, html};
 
 use crate::facts::RecordingFacts;
 use crate::figures::StudySummary;
+use crate::headline::sources;
 use crate::report::elements::{arm, section};
 use crate::robot_tally::RobotArmTotals;
 use tomcom_core::base::text;
@@ -95,7 +96,9 @@ fn analysis(figures: &StudySummary) -> String {
         true => ", the estimate of beliefs and the hypothetical signals of each concept",
         false => " and the estimate of beliefs",
     };
+    let found = &figures.totals.belief_sources;
     let causes = match figures.totals.beliefs_from {
+        Some(_) if found.len() > 1 => &format!("Causes of errors are known by {}.", sources(found)),
         Some(BeliefSource::Recorded) => {
             "Causes of errors were attributed by the recorded beliefs of the simulated participants."
         }

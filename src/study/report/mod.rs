@@ -14,6 +14,8 @@ use crate::column::CsvTable;
 use crate::definitions::DEFINITIONS;
 use crate::facts::RecordingFacts;
 use crate::figures::{StudySummary, pairs_in_words};
+use crate::headline::{RATES_AND_RATIO, mixed_sources, primary_outcome};
+use crate::pass::reading::WaivedPractice;
 use crate::planned_trial::{copies_in_words, in_words};
 use crate::report::elements::{Captions, PageColumn, UNKNOWN, cells, count, number, p_sentence, percent, section};
 use crate::trial_statistics::{DisplayLosses, TrialStatistics};
@@ -116,6 +118,8 @@ fn summary(figures: &StudySummary) -> Markup {
         (None, None) => card(&text::count(totals.signals, "signal", "signals"), "shown to participants"),
     };
     html! {
+        @for sentence in primary_outcome(figures) { p class="lead" { (sentence) } "\n" }
+        @if figures.arms.is_some() { p class="note" { (RATES_AND_RATIO) } "\n" }
         p class="lead" {
             (text::count(figures.trials, "trial", "trials")) " of "
             (text::count(figures.participants, "participant", "participants")) ", " (totals.actions) " recorded presses."
@@ -128,12 +132,15 @@ fn summary(figures: &StudySummary) -> Markup {
             }
             "\n"
         }
-        @if totals.beliefs_from == Some(BeliefSource::Estimate) {
+        @if totals.belief_sources.keys().eq([&BeliefSource::Estimate]) {
             p class="warning" {
                 "Beliefs of participants are known only as the assistant's estimate. Results that rest on them, such as the share of \
                  belief related errors, are tentative until two raters have coded the errors."
             }
             "\n"
+        }
+        @if let Some((words, differs)) = mixed_sources(figures) {
+            p class=(if differs { "warning" } else { "note" }) { "C" (&words[1..]) "." } "\n"
         }
         @if let Some(found) = &figures.preregistration {
             p class=(if found.differences.is_empty() { "note" } else { "warning" }) { (found.words()) } "\n"
@@ -195,6 +202,7 @@ fn trials_section(captions: &mut Captions, figures: &StudySummary, trials: &[Tri
             }
             "\n"
         }
+        @if let Some(waived) = WaivedPractice::in_words(&figures.waived) { p class="note" { "P" (&waived[1..]) "." } "\n" }
         (without_display(trials))
     };
     section("Trials", content)

@@ -45,7 +45,7 @@ fn the_sheets_around_a_trial_fit_every_size() {
         let mut stage = planned(0, false);
         stage.model.size = size;
         let screen = stage.screen(size);
-        for text in ["INSTRUCTION", "P01 familiarisation", "Ask for questions.", "tick this step as done"] {
+        for text in ["INSTRUCTION", "P01 practice", "Ask for questions.", "tick this step as done"] {
             assert!(screen.contains(text), "{text:?} at {size:?} in\n{screen}");
         }
         let mut stage = planned(2, true);
@@ -74,6 +74,36 @@ fn the_sheets_around_a_trial_fit_every_size() {
         }
         stage.at(9.0, Event::Protocol(ProtocolEvent::AnswersShown));
         stage.shows(size, &["6 The signals were given too often.", "to the item without an answer"]);
+    }
+}
+
+#[test]
+fn every_sheet_says_what_to_open_while_the_participants_page_is_missing() {
+    for size in SIZES {
+        for (slot, instructed) in [(0, false), (2, true)] {
+            let mut stage = planned(slot, instructed);
+            stage.session.spec.participant.kind = ParticipantKind::Display;
+            let health = ParticipantDisplayHealth {
+                url: "http://192.168.1.5:50022".to_string(),
+                code: Some("481516".to_string()),
+                ..ParticipantDisplayHealth::default()
+            };
+            stage.model.size = size;
+            stage.model.display = Some(health.clone());
+            let told = ["http://192.168.1.5:50022", "481516"];
+            stage.shows(size, &told);
+            if instructed {
+                // The card before the trial, the one after it, and the questionnaire.
+                stage.at(0.0, Event::TrialStarted);
+                stage.at(9.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
+                stage.shows(size, &told);
+                let (phase, number) = (StudyPhase::Questionnaire, 2);
+                stage.at(9.0, Event::Protocol(ProtocolEvent::PhaseStarted { phase, number }));
+                stage.shows(size, &told);
+            }
+            stage.model.display = Some(ParticipantDisplayHealth { page: Some([1920, 1080]), ..health });
+            assert!(!stage.screen(size).contains("481516"), "a page is connected");
+        }
     }
 }
 
@@ -309,6 +339,11 @@ fn the_sheet_of_the_tutorial_tells_where_the_participant_is() {
         if size == SIZES[0] {
             check_snapshot("console", "tutorial_80x24", screen);
         }
+        // One key does not end it: what is left of it cannot be shown again.
+        assert_eq!(stage.key(KeyCode::Char('0')), None);
+        stage.shows(size, &["End the tutorial?"]);
+        let ended = TutorialEvent::Ended { by: TutorialPageTurner::Wizard };
+        assert_eq!(input(stage.key(KeyCode::Char('y'))), Some(Event::Protocol(ProtocolEvent::Tutorial(ended))));
     }
 }
 

@@ -2,7 +2,7 @@
 
 use tomcom_session::orders::OrderList;
 use tomcom_session::plan::{
-    NextRecording, ParticipantProgress, Participants, PlanRecording, RecordingOutcome, Study,
+    NextRecording, ParticipantProgress, Participants, PhaseStand, PlanRecording, RecordingOutcome, Study,
     orders as orders_of_conditions,
 };
 use tomcom_session::settings::{BellOccasion, ColourTheme};
@@ -184,6 +184,10 @@ fn made(study: &Study, slot: usize, attempt: u32, outcome: RecordingOutcome) -> 
         consent: true,
         instructed: true,
         presses: 20,
+        stand: PhaseStand::default(),
+        waived: None,
+        excluded: None,
+        answered: BTreeSet::new(),
         outcome,
     }
 }

@@ -204,6 +204,36 @@ fn hasty_answers_are_all_taken() {
     }
 }
 
+#[test]
+fn where_a_recording_ended_is_told_by_the_presses_of_the_trial_and_by_the_phase() {
+    let (study, out) = (study(|_| ()), folder("ended-where"));
+    let mut run = Run::new(&out, wanted(1, true));
+    run.next_phase();
+    run.trial();
+    run.next_phase();
+    let item = run.engine.session().questionnaire().expect("a questionnaire").items[0].id.clone();
+    run.tell(ProtocolEvent::ItemAnswered { item, answer: 5_u8.into() });
+    let recording = run.close();
+    // Somebody pressed a button before the start.
+    let log = fs::read_to_string(recording.join(LOG_NAME)).expect("a log");
+    let press = log.lines().find(|line| line.contains("\"kind\":\"press\"")).expect("a press").to_string();
+    let start = log.lines().find(|line| line.contains("\"trial_started\"")).expect("a start");
+    fs::write(recording.join(LOG_NAME), log.replacen(start, &format!("{press}\n{start}"), 1)).expect("written");
+    let made = recordings::of_plan(&out, "study").expect("readable").0;
+    assert_eq!((made[0].presses, made[0].outcome.clone()), (40, RecordingOutcome::Open));
+    let progress = ParticipantProgress::from_recordings(&study, 0, &made).expect("a recording of the plan");
+    let ended_where = &progress.steps[1].recordings[0].ended_where;
+    let words = "the trial is over after 40 of 304 presses; of the questionnaire ";
+    assert!(ended_where.starts_with(words) && ended_where.contains(" 1 of "), "{ended_where}");
+    // A practice criterion that was waived is told, too.
+    let mut run = Run::new(&out, wanted(0, false));
+    run.tell(consent());
+    run.go_through();
+    run.close();
+    let made = recordings::of_plan(&out, "study").expect("readable").0;
+    assert!(made.iter().any(|one| one.waived.as_deref() == Some("no time")), "{made:?}");
+}
+
 /// Copies a recording, cut after `bytes` of its log.
 fn cut(recording: &Path, out: &Path, bytes: usize) -> PathBuf {
     let folder = out.join(recording.file_name().expect("a name"));

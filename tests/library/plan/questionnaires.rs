@@ -1,7 +1,10 @@
 //! Questionnaires with items of every kind: what is an answer, what a log holds, and what the files of the program ask.
 
 use tomcom_session::files::parse::parse;
-use tomcom_session::plan::{AnswerFormat, PhaseSpec, Questionnaire, QuestionnaireSpec};
+use tomcom_session::plan::{
+    AnswerFormat, ParticipantProgress, PhaseSpec, PhaseStand, PlanRecording, Questionnaire, QuestionnaireSpec,
+    RecordingOutcome, Study,
+};
 use tomcom_session::questionnaire::AnswerValue;
 
 use super::files;
@@ -143,4 +146,34 @@ fn the_person_is_asked_before_the_first_trial_and_only_then() {
     };
     assert_eq!(asked(1), (3, 1), "before the first trial, and what is asked after it");
     assert_eq!(asked(2).1, 0, "not again before the second");
+    // Once for each participant: the answers of a recording that is left out, and repeated, are there.
+    let (spec, _) = study.settings(WantedRecording { participant: 0, slot: 1, attempt: 1, instructed: true });
+    let mut made = PlanRecording {
+        recording: "2026-03-14-P01-1".to_string(),
+        code: spec.participant.code.clone(),
+        recorded_as: None,
+        step: spec.step.expect("a step"),
+        consent: true,
+        instructed: true,
+        presses: 20,
+        stand: PhaseStand::default(),
+        waived: None,
+        excluded: Some("the tracker slipped".to_string()),
+        answered: BTreeSet::new(),
+        outcome: RecordingOutcome::Excluded { reason: "the tracker slipped".to_string() },
+    };
+    let phases = |made: &PlanRecording| {
+        let made = std::slice::from_ref(made);
+        let progress = ParticipantProgress::from_recordings(&study, 0, made).expect("a recording of the plan");
+        progress.settings(&study, 1, 2).0.step.expect("a step").phases
+    };
+    assert_eq!(phases(&made), study_phases(&study), "nobody has answered yet");
+    made.answered.insert("demographics".to_string());
+    assert_eq!(phases(&made), study_phases(&study)[1..], "without the questions before the trial");
+}
+
+/// The phases of the first participant's first trial, with all that is asked.
+fn study_phases(study: &Study) -> Vec<PhaseSpec> {
+    let (spec, _) = study.settings(WantedRecording { participant: 0, slot: 1, attempt: 2, instructed: true });
+    spec.step.expect("a step").phases
 }

@@ -2,6 +2,7 @@
 
 mod arms;
 mod effect;
+mod headline;
 mod numbers;
 mod planned;
 mod power;

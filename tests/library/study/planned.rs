@@ -23,6 +23,17 @@ fn recordings(frozen: &FrozenPlan) -> Vec<RecordedPlan> {
     frozen.participants.iter().map(recording).collect()
 }
 
+#[test]
+fn a_recording_of_another_plan_is_none_of_a_participant_of_the_frozen_one() {
+    let frozen = frozen();
+    let mut all = recordings(&frozen);
+    all[2].plan = Some(("another".to_string(), "0".to_string()));
+    let told = differences(&frozen, &all);
+    let code = &frozen.participants[2];
+    assert!(told.contains(&format!("1 participant is without a recording: {code}")), "{told:?}");
+    assert!(told.contains(&"1 recording is of the plan \"another\"".to_string()), "{told:?}");
+}
+
 fn differences(frozen: &FrozenPlan, recordings: &[RecordedPlan]) -> Vec<String> {
     PreregistrationCheck::new("0".to_string(), frozen, recordings).differences
 }
@@ -113,7 +124,7 @@ fn a_whole_study_misses_nothing_and_a_lost_recording_is_named() {
         trials: trials.to_vec(),
     };
     assert_eq!(missing, [second(&[2])]);
-    assert_eq!(in_words(&missing).as_deref(), Some("1 trial of the plan has no recording: P02 trial 2"));
+    assert_eq!(in_words(&missing).as_deref(), Some("1 trial of the plan \"short\" has no recording: P02 trial 2"));
     // Practice is no trial; a trial that was done twice is one.
     all.retain(|one| one.participant != "P02");
     all.push(recording("short", 1, None, 2));
@@ -132,13 +143,21 @@ fn participants_without_a_recording_are_found_before_the_last_and_plans_are_told
     assert_eq!(
         in_words(&missing).as_deref(),
         Some(
-            "6 trials of the plan have no recording: P01 trials 1, 2; participant 1 trials 1, 2; participant 2 trials 1, 2"
+            "2 trials of the plan \"other\" have no recording: P01 trials 1, 2; 4 trials of the plan \"short\" have no recording: \
+             P01 trials 1, 2; P02 trials 1, 2"
         )
     );
-    assert_eq!((missing[0].plan.as_str(), missing[1].plan.as_str(), &missing[1].code), ("other", "short", &None));
+    assert_eq!(
+        (missing[0].plan.as_str(), missing[1].plan.as_str(), &missing[1].code),
+        ("other", "short", &Some("P01".to_string()))
+    );
     let words = in_words(&missing_trials(&planned_trials(20..21))).expect("missing");
-    assert!(words.starts_with("40 trials of the plan have no recording: participant 1 trials 1, 2; "), "{words}");
-    assert!(words.ends_with("participant 8 trials 1, 2; and of 12 more participants"), "{words}");
+    assert!(words.starts_with("40 trials of the plan \"short\" have no recording: P01 trials 1, 2; "), "{words}");
+    assert!(words.ends_with("P08 trials 1, 2; and of 12 more participants"), "{words}");
+    // Codes that are no numbers are known from recordings alone.
+    let named = RecordedPlan { participant: "Anna".to_string(), ..recording("short", 1, Some(1), 2) };
+    let words = in_words(&missing_trials(&[named])).expect("missing");
+    assert!(words.ends_with("the plan's participant 1 trials 1, 2; Anna trial 2"), "{words}");
 }
 
 #[test]
@@ -152,9 +171,11 @@ fn a_recording_whose_code_was_corrected_is_of_the_participant_who_has_the_code()
     let mut all = planned_trials(0..1);
     all.extend([corrected("P03", 1), recording("short", 1, Some(2), 2), recording("short", 2, Some(2), 2)]);
     let missing = missing_trials(&all);
-    assert_eq!(in_words(&missing).as_deref(), Some("1 trial of the plan has no recording: P02 trial 1"));
+    let told = "1 trial of the plan \"short\" has no recording: P02 trial 1";
+    assert_eq!(in_words(&missing).as_deref(), Some(told));
     all.push(corrected("P09", 2));
     let missing = missing_trials(&all);
-    assert_eq!(in_words(&missing).as_deref(), Some("2 trials of the plan have no recording: P02 trial 1; P09 trial 1"));
+    let told = "2 trials of the plan \"short\" have no recording: P02 trial 1; P09 trial 1";
+    assert_eq!(in_words(&missing).as_deref(), Some(told));
     assert_eq!(missing[1].participant, None, "its number in the plan is not known");
 }

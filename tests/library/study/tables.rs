@@ -10,7 +10,7 @@ use tomcom_study::column::{CsvRow, CsvTable, DataDictionaryRow, TableCell, Table
 use tomcom_study::files::export::AnalysisFolder;
 use tomcom_study::frozen_plan::RecordedPlan;
 use tomcom_study::kept_cost::KeptCost;
-use tomcom_study::pass::reading::{self, AnalysisScope, RecordingAnalysis};
+use tomcom_study::pass::reading::{self, AnalysisScope, RecordingAnalysis, WaivedPractice};
 use tomcom_study::prevention::PreventionCounts;
 use tomcom_study::roc::ConceptPreventionCounts;
 use tomcom_study::study_part::AnalysedRecording;
@@ -294,6 +294,10 @@ fn analysed_recordings_are_kept_in_files_until_all_are_read() {
         probes: Some(one_right_answer(Condition::None)),
     };
     let plan = RecordedPlan { participant: trial.participant.clone(), plan: None, place: None };
+    let (reason, orders, presses, errors) = ("no time".to_string(), 0, 24, 9);
+    let waived = WaivedPractice { participant: trial.participant.clone(), reason, orders, presses, errors };
+    let words = format!("practice criterion not met, and waived: {} (no time; ", trial.participant);
+    assert!(WaivedPractice::in_words(std::slice::from_ref(&waived)).is_some_and(|told| told.starts_with(&words)));
     let practice = AnalysedRecording {
         recording: "practice".to_string(),
         digest: String::new(),
@@ -301,6 +305,7 @@ fn analysed_recordings_are_kept_in_files_until_all_are_read() {
         correction: None,
         consent: None,
         tutorial: Vec::new(),
+        waived: Some(waived),
         trial: None,
     };
     let recording = AnalysedRecording {

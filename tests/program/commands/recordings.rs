@@ -165,6 +165,10 @@ fn a_folder_is_listed_and_is_no_recording_where_one_is_meant() {
     assert!(told.contains("all recordings of S002 are excluded already"), "{told}");
     check(&["exclude", out, "--code", "S002", "--back"], 0);
     assert_eq!(state("S002"), Value::Null);
+    // What was excluded by itself stays so.
+    let back = check(&["exclude", out, "--code", "S003", "--back"], 0);
+    assert!(String::from_utf8_lossy(&back.stderr).contains("seed7-S003 stays excluded"), "{back:?}");
+    assert_eq!(state("S003"), "excluded: interrupted");
     assert!(complaint(&["exclude", out, "--code", "S09", "--reason", "x"]).contains("found no recording of S09"));
     let usage = complaint(&["exclude", &format!("{out}/seed7-S002")]);
     assert!(usage.contains("<--reason <REASON>|--back>"), "{usage}");

@@ -63,8 +63,9 @@ const Hands = (() => {
   function typed(event) {
     const scene = Stage.scene();
     if (!scene || event.target instanceof HTMLInputElement || event.ctrlKey || event.altKey || event.metaKey) return;
-    // Typed text stays in its field; only the enter key leaves it.
-    if (event.target instanceof HTMLTextAreaElement && (event.key !== "Enter" || event.isComposing)) return;
+    // Typed text stays in its field; only the enter key leaves it, and the delete key an empty field.
+    const leaves = event.key === "Enter" || (event.key === "Delete" && event.target.value === "");
+    if (event.target instanceof HTMLTextAreaElement && (!leaves || event.isComposing)) return;
     const isHeld = event.repeat || down.has(event.code || event.key);
     down.add(event.code || event.key);
     const question = Stage.shown() && Stage.shown().question, focused = focusedButton(event.key);

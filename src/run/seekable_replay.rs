@@ -14,7 +14,7 @@ use tomcom_session::follower::SessionFollower;
 use tomcom_session::history::belief_track::{BeliefHistory, BeliefSnapshot};
 use tomcom_session::history::error_reasons::ExplainedError;
 use tomcom_session::history::false_beliefs::EstimatedFalseBeliefs;
-use tomcom_session::history::wording;
+use tomcom_session::history::{signal_words, wording};
 use tomcom_session::log::LogPlace;
 use tomcom_session::replay::RecordingReplay;
 use tomcom_session::replay::ReplayLandmark;
@@ -395,7 +395,13 @@ impl SeekableReplay {
             }
             ReplayLandmark::Signal => entries().find_map(|entry| match entry {
                 TimelineEvent::Noted(Event::SignalShown { by, signal, .. }) => {
-                    Some(format!("{}, by the {}", wording::signal(signal), wording::sender(*by)))
+                    let (follower, mut shown) = (&self.replay.follower, self.replay.follower.signals.shown.iter());
+                    let Some(nth) = shown.position(|shown| shown.time == now) else {
+                        return Some(format!("{}, by the {}", wording::signal(signal), wording::sender(*by)));
+                    };
+                    let sent = signal_words::sent(follower, &follower.signals.shown[nth]);
+                    let outcome = signal_words::outcome(follower, nth);
+                    Some(if outcome.is_empty() { sent } else { format!("{sent}; {outcome}") })
                 }
                 _ => None,
             }),

@@ -9,9 +9,9 @@ use crate::settings::ParticipantKind;
 use crate::{Event, Session, TimestampedEvent};
 use tomcom_core::base::text::count;
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::AspectId;
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption, SignalReason, aspects_told};
 use tomcom_core::communication::{Sender, Signal};
+use tomcom_core::kitchen::AspectId;
 use tomcom_core::measures::sequences::FalseBeliefEpisode;
 use tomcom_core::measures::wizard_performance::{
     FalseBeliefPeriod, SignalVerdict, WizardMeasures, WizardSignal, verdicts,

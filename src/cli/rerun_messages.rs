@@ -11,7 +11,8 @@ use crate::run::open_viewer::{
 };
 use tomcom_core::base::text::PathText;
 use tomcom_core::base::time::SessionTime;
-use tomcom_devices::scene::{SceneLandmark, moment_on_clock};
+use tomcom_devices::scene::moment_on_clock;
+use tomcom_session::replay::ReplayLandmark;
 
 impl From<RerunViewerError> for Failure {
     fn from(error: RerunViewerError) -> Failure {
@@ -34,33 +35,32 @@ pub(super) fn save_all(recordings: &[PathText]) -> Result<(), Failure> {
 /// and what happened as its comment.
 pub(super) fn list_landmarks(recordings: &[PathBuf], asked: AskedLandmarks) -> Result<(), Failure> {
     let kinds = [
-        (asked.errors, SceneLandmark::Error),
-        (asked.signals, SceneLandmark::Signal),
-        (asked.beliefs, SceneLandmark::FalseBelief),
+        (asked.errors, ReplayLandmark::Error),
+        (asked.signals, ReplayLandmark::Signal),
+        (asked.beliefs, ReplayLandmark::FalseBelief),
     ];
-    let kinds: Vec<SceneLandmark> = kinds.into_iter().filter_map(|(is_asked, kind)| is_asked.then_some(kind)).collect();
+    let kinds: Vec<ReplayLandmark> =
+        kinds.into_iter().filter_map(|(is_asked, kind)| is_asked.then_some(kind)).collect();
     for recording in recordings {
         let mut text = String::new();
         for RecordedLandmark { from, until, words } in landmarks(recording, &kinds)? {
+            // A false belief can last as short as the estimate tells.
+            if until.is_some_and(|until| until.secs_since(from) < asked.least) {
+                continue;
+            }
             let until = until.map_or_else(|| "the end".to_string(), moment_on_clock);
-            let command = format!("tomcom review {} --at {}", shell_word(recording), moment_on_clock(from));
+            // To the millisecond, as the viewer has it: at a cut time the event would not have happened.
+            let at = format!("{from}.{:03}", from.0 / 1_000_000 % 1000);
+            let command = format!("tomcom review {} --at {at}", shell_word(recording));
             text += &format!("{command}  # to {until}, {words}\n");
         }
         if text.is_empty() {
-            let names: Vec<&str> = kinds.iter().map(|&kind| named(kind)).collect();
+            let names: Vec<&str> = kinds.iter().map(|kind| kind.name()).collect();
             text = format!("{}: no {}\n", recording.display(), names.join(", no "));
         }
         put(&text)?;
     }
     Ok(())
-}
-
-fn named(kind: SceneLandmark) -> &'static str {
-    match kind {
-        SceneLandmark::Error => "error",
-        SceneLandmark::Signal => "signal",
-        SceneLandmark::FalseBelief => "false belief",
-    }
 }
 
 /// Opens recordings in the Rerun viewer at a time on the trial's clock, or writes their stream to a file. `web`: use a

@@ -49,6 +49,21 @@ pub(super) struct AskedLandmarks {
     /// The same for each false belief, by the estimate, with the truth; also together with the others.
     #[arg(long, conflicts_with_all = ["save", "web", "at"])]
     pub(super) beliefs: bool,
+    /// With them, only what lasts at least this long.
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, hide_default_value = true, value_parser = at_least_zero)]
+    pub(super) least: f64,
+}
+
+impl AskedLandmarks {
+    fn is_any(self) -> bool {
+        self.errors || self.signals || self.beliefs
+    }
+}
+
+/// Parses a duration in seconds.
+fn at_least_zero(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| number.is_finite() && *number >= 0.0);
+    number.ok_or_else(|| "a duration in seconds, such as 1 or 0.5".to_string())
 }
 
 /// Parses a time on the trial's clock, written as the console shows it, or in seconds.
@@ -85,9 +100,12 @@ pub(super) fn review(args: &ReviewArgs) -> Result<(), Failure> {
             recordings.len()
         )));
     }
+    if args.asked.least > 0.0 && !args.asked.is_any() {
+        let help = "--least with --errors, --signals or --beliefs";
+        return Err(Failure::Wrong(miette::miette!(help = help, "found --least, with nothing to list")));
+    }
     let recordings = each_chosen(&recordings, "open")?;
-    let AskedLandmarks { errors, signals, beliefs } = args.asked;
-    match errors || signals || beliefs {
+    match args.asked.is_any() {
         true => list_landmarks(&recordings, args.asked),
         false => open(recordings, save, args.web, args.at),
     }

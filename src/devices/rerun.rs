@@ -43,8 +43,6 @@ pub const VERSION: &str = "0.36.3";
 const STEP: &str = "step";
 /// The timeline whose only row is the last one of the stream: a viewer that has it has the whole stream.
 const END: &str = "end";
-/// A tenth of a second in nanoseconds.
-const TENTH: u64 = 100_000_000;
 /// A millisecond in nanoseconds.
 const MS: u64 = 1_000_000;
 /// Largest delay with which connected viewers get data.
@@ -188,19 +186,11 @@ impl RerunWriter {
                 continue;
             }
             let (components, circle) = (components(row), sight.map(|sight| [circle(sight)]));
-            let is_line = matches!(row.shown, EntityData::Words { .. });
             for one in self.streams.iter_mut().filter(|one| is_at_once(one)) {
                 if sight.is_some() && !one.shows_gaze(moment.time) {
                     continue;
                 }
-                // A line of a list has the time that the texts and the viewer's cursor have there, not a cut one.
-                if is_line {
-                    one.set_trial_time(moment.trial.0.next_multiple_of(TENTH));
-                }
-                one.log(&entity, false, &components);
-                if is_line {
-                    one.set_trial_time(moment.trial.0 / MS * MS);
-                }
+                one.log(&entity, matches!(row.shown, EntityData::WholePage(_)), &components);
                 if let Some(circle) = &circle {
                     one.log(&around(&entity), false, &batches(circle));
                     one.log(&recent(&entity), false, &components);
@@ -276,14 +266,10 @@ impl OpenStream {
         }
         // The timeline shows whole milliseconds, which are easier to read; no two updates are closer together.
         self.now = [whole(moment.trial.0 / MS * MS), whole(moment.time.0), whole(moment.step)];
-        let [_, session, step] = self.now;
-        self.set_trial_time(moment.trial.0 / MS * MS);
+        let [trial, session, step] = self.now;
+        self.stream.set_time(TRIAL_TIME, re_sdk::TimeCell::from_duration_nanos(trial));
         self.stream.set_time(SESSION_TIME, re_sdk::TimeCell::from_duration_nanos(session));
         self.stream.set_time_sequence(STEP, step);
-    }
-
-    fn set_trial_time(&self, time_ns: u64) {
-        self.stream.set_time(TRIAL_TIME, re_sdk::TimeCell::from_duration_nanos(whole(time_ns)));
     }
 
     /// Keeps a gaze sample until the end of its piece.
@@ -425,6 +411,8 @@ fn parts(shown: &EntityData) -> Vec<Part> {
         EntityData::Solids(solids, colour) => solids_in_3d(solids, colour_of(*colour)),
         EntityData::Place(place) => vec![Box::new(transform(place))],
         EntityData::Value(value) => vec![Box::new(archetypes::Scalars::single(*value))],
+        // A curve ends at a row without a number.
+        EntityData::NoValue => vec![Box::new(archetypes::Scalars::new(std::iter::empty::<f64>()))],
         EntityData::Line(SeriesStyle { name, colour }) => {
             let line = archetypes::SeriesLines::new().with_names([name.as_str()]).with_colors([colour_of(*colour)]);
             vec![Box::new(line.with_widths([2.0]).with_interpolation_mode(InterpolationMode::StepAfter))]
@@ -443,9 +431,13 @@ fn parts(shown: &EntityData) -> Vec<Part> {
                 SceneLogLevel::Warning => TextLogLevel::WARN,
                 SceneLogLevel::Error => TextLogLevel::ERROR,
             };
-            vec![Box::new(archetypes::TextLog::new(&*printable(text)).with_level(level).with_color(colour_of(*colour)))]
+            vec![Box::new(
+                archetypes::TextLog::new(&*printable_lines(text)).with_level(level).with_color(colour_of(*colour)),
+            )]
         }
-        EntityData::Page(text) => vec![Box::new(archetypes::TextDocument::from_markdown(&*printable_lines(text)))],
+        EntityData::Page(text) | EntityData::WholePage(text) => {
+            vec![Box::new(archetypes::TextDocument::from_markdown(&*printable_lines(text)))]
+        }
         EntityData::State(text, colour) => state(&printable(text), colour_of(*colour)),
     }
 }

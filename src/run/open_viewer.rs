@@ -1,7 +1,6 @@
 //! Command `tomcom review`: opens recordings in the Rerun viewer, from the stream file beside the log or rebuilt from
 //! the log.
 
-use std::collections::HashMap;
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
@@ -11,19 +10,22 @@ use tempfile::TempPath;
 
 use crate::run::terminal::asked_to_end;
 use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::Agent;
+use tomcom_core::measures::raters::CodableErrors;
 use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_devices::rerun::{FilmFrame, RerunWriter, ShownRecording, StreamIdentity, StreamOutlets, WebViewer};
 use tomcom_devices::rrd::{self, RRD_NAME, RerunFileState};
-use tomcom_devices::scene::{SceneInputs, SceneLandmark, SceneUpdate, SessionScene, facts, landmark, title};
+use tomcom_devices::scene::{SceneInputs, SceneUpdate, SessionScene, TimedBars, facts, has_poses, title};
 use tomcom_devices::stream::PORTS;
 use tomcom_devices::stream_head;
 use tomcom_devices::viewer::{self, ViewerAvailability};
 use tomcom_session::files::file_error::{FileError, FileResult, read_bytes};
 use tomcom_session::files::overwrite;
 use tomcom_session::files::replace_file::Replacement;
+use tomcom_session::history::{error_reasons, signal_words, wording};
 use tomcom_session::log::video_file::{self, AttachedFilm};
-use tomcom_session::log::{LOG_NAME, LogReader, RecordingLock, RecordingWriteError};
-use tomcom_session::replay::RecordingReplay;
+use tomcom_session::log::{LOG_NAME, LogReader, RecordingLock, RecordingWriteError, rater_codes};
+use tomcom_session::replay::{RecordingReplay, ReplayLandmark};
 use tomcom_session::{Session, TimestampedEvent};
 
 /// First network port that is tried for the web viewer.
@@ -314,8 +316,8 @@ fn playing(recordings: &[PathBuf], with_films: bool) -> FileResult<Vec<Playing>>
             (_, false) => root,
         };
         let title = title(playing.replay.session(), &names[nth]);
-        let films = playing.films.len();
-        Ok(Playing { lane: ShownRecording { root, title, films }, ..playing })
+        let (films, has_arm) = (playing.films.len(), has_poses(playing.replay.session()));
+        Ok(Playing { lane: ShownRecording { root, title, films, has_arm }, ..playing })
     };
     recordings.iter().enumerate().map(one).collect()
 }
@@ -397,21 +399,44 @@ pub struct RecordedLandmark {
 ///
 /// # Errors
 /// The recording cannot be read.
-pub fn landmarks(recording: &Path, kinds: &[SceneLandmark]) -> FileResult<Vec<RecordedLandmark>> {
+pub fn landmarks(recording: &Path, kinds: &[ReplayLandmark]) -> FileResult<Vec<RecordedLandmark>> {
+    let mut replay = RecordingReplay::open(recording)?;
+    replay.run()?;
+    let (follower, session) = (&replay.follower, replay.session());
+    let kitchen = &session.kitchen;
     let mut found: Vec<RecordedLandmark> = Vec::new();
-    let mut open: HashMap<String, usize> = HashMap::new();
-    Playing::open(recording)?.play(|moment| {
-        for row in &moment.rows {
-            let Some((_, words)) = landmark(row).filter(|(kind, _)| kinds.contains(kind)) else { continue };
-            if let Some(last) = open.remove(&row.entity) {
-                found[last].until = Some(moment.trial);
-            }
-            if !words.is_empty() {
-                open.insert(row.entity.clone(), found.len());
-                found.push(RecordedLandmark { words, from: moment.trial, until: None });
-            }
+    let mut add = |began: SessionTime, ended: Option<SessionTime>, words: String| {
+        let from = session.trial_clock_at(began);
+        found.push(RecordedLandmark { words, from, until: ended.map(|ended| session.trial_clock_at(ended)) });
+    };
+    if kinds.contains(&ReplayLandmark::Error) {
+        let codes =
+            rater_codes::read_all(replay.log().folder(), &CodableErrors::from_presses(kitchen, &follower.judged))?;
+        let errors = follower.judged.iter().enumerate().filter(|(_, press)| press.verdict.error);
+        for (number, (nth, press)) in (1..).zip(errors) {
+            let name = wording::button(kitchen, Agent::Human, press.button);
+            let coded = codes.iter().filter_map(|(rater, codes)| Some((rater, codes.0.get(&press.seq)?)));
+            let coded: String = coded.map(|(rater, code)| format!("; {rater}: {}", wording::code(code))).collect();
+            let why = error_reasons::with_cause(kitchen, press);
+            let next = follower.judged.get(nth + 1).map(|next| next.time);
+            add(press.time, next, format!("error {number}: {name}: {why}{coded}"));
         }
-    })?;
+    }
+    if kinds.contains(&ReplayLandmark::Signal) {
+        for (nth, shown) in follower.signals.shown.iter().enumerate() {
+            let (sent, outcome) = (signal_words::sent(follower, shown), signal_words::outcome(follower, nth));
+            let told: Vec<String> = [sent, outcome].into_iter().filter(|part| !part.is_empty()).collect();
+            add(shown.time, shown.ended, format!("signal: {}", told.join("; ")));
+        }
+    }
+    if kinds.contains(&ReplayLandmark::FalseBelief) {
+        for held in follower.false_beliefs.all() {
+            let name = wording::location(&kitchen.aspects[held.aspect.index()].name);
+            let [thinks, truth] = held.contents(kitchen);
+            add(held.began, held.ended, format!("false belief: {name} taken for {thinks}, truly {truth}"));
+        }
+    }
+    found.sort_by_key(|one| one.from);
     Ok(found)
 }
 
@@ -459,9 +484,15 @@ impl Playing {
         let (opening, lane) = (self.scene.opening(), self.lane.clone());
         writer.moment(&lane, &opening);
         let films = std::mem::take(&mut self.films);
+        let mut bars = TimedBars::default();
         let session = self.play(|moment| {
-            writer.moment(&lane, moment);
+            for moment in bars.take(&moment) {
+                writer.moment(&lane, &moment);
+            }
         })?;
+        for moment in bars.finish() {
+            writer.moment(&lane, &moment);
+        }
         for (number, (path, film)) in films.iter().enumerate() {
             let content = read_bytes(path, MOST_FILM);
             let content = content.map_err(|reason| FileError::unreadable(path, reason, "the film in video.json"))?;
@@ -471,16 +502,16 @@ impl Playing {
     }
 
     /// Passes on all updates of the scene, in the order of time.
-    fn play(mut self, mut show: impl FnMut(&SceneUpdate)) -> FileResult<Session> {
+    fn play(mut self, mut show: impl FnMut(SceneUpdate)) -> FileResult<Session> {
         let mut held: Option<(TimestampedEvent, Option<DirichletBelief>)> = None;
         loop {
             let next = self.replay.step()?;
             if let Some((stamped, belief)) = held.take() {
                 // The belief estimate is shown once all events of the same time have been applied.
                 let is_last = next.as_ref().is_none_or(|next| next.stamped.time > stamped.time);
-                let judged = &self.replay.follower.judged;
-                let derived = SceneInputs { judged, belief: belief.as_ref().filter(|_| is_last) };
-                self.scene.see(&stamped, derived).iter().for_each(&mut show);
+                let follower = &self.replay.follower;
+                let inputs = SceneInputs { follower, belief: belief.as_ref().filter(|_| is_last) };
+                self.scene.see(&stamped, inputs).into_iter().for_each(&mut show);
             }
             let Some(next) = next else { return Ok(self.replay.follower.session) };
             let wants = self.scene.wants_belief(next.stamped.time);

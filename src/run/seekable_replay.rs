@@ -11,9 +11,10 @@ use crate::console::beliefs;
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::follower::SessionFollower;
-use tomcom_session::history::belief_track::{self, BeliefHistory, BeliefSnapshot};
+use tomcom_session::history::belief_track::{BeliefHistory, BeliefSnapshot};
 use tomcom_session::history::error_reasons::ExplainedError;
-use tomcom_session::history::{event_words, wording};
+use tomcom_session::history::false_beliefs::EstimatedFalseBeliefs;
+use tomcom_session::history::{event_words, signal_words, wording};
 use tomcom_session::log::LogPlace;
 use tomcom_session::replay::RecordingReplay;
 use tomcom_session::replay::ReplayLandmark;
@@ -344,11 +345,16 @@ impl SeekableReplay {
         last.checked_sub(2).map_or(0, |before| self.steps[before].index + 1)
     }
 
+    /// The false beliefs of the estimate, as far as the recording was read.
+    fn false_beliefs(&self) -> &EstimatedFalseBeliefs {
+        &self.replay.follower.false_beliefs
+    }
+
     /// Times of the landmarks of this kind, as far as the recording was read.
     pub fn landmarks(&self, what: ReplayLandmark) -> Vec<SessionTime> {
         match what {
             ReplayLandmark::Error => self.errors.iter().map(|error| error.time).collect(),
-            ReplayLandmark::FalseBelief => self.beliefs.newly_false().collect(),
+            ReplayLandmark::FalseBelief => self.false_beliefs().all().map(|one| one.began).collect(),
             ReplayLandmark::Signal | ReplayLandmark::Marker => {
                 self.steps.iter().filter(|step| step.landmark == Some(what)).map(|step| step.time).collect()
             }
@@ -369,7 +375,12 @@ impl SeekableReplay {
     pub fn named(&self, what: ReplayLandmark) -> Option<String> {
         let times = self.landmarks(what);
         let index = times.iter().position(|&time| time == self.time())?;
-        Some(format!("{} {} of {}: {}", what.name(), index + 1, times.len(), self.told(what)?))
+        // False beliefs can begin together.
+        let number = match times.iter().filter(|&&time| time == self.time()).count() {
+            0 | 1 => (index + 1).to_string(),
+            several => format!("{} to {}", index + 1, index + several),
+        };
+        Some(format!("{} {number} of {}: {}", what.name(), times.len(), self.told(what)?))
     }
 
     /// What the landmark of this kind is at which the replay stands.
@@ -384,7 +395,13 @@ impl SeekableReplay {
             }
             ReplayLandmark::Signal => entries().find_map(|entry| match entry {
                 TimelineEvent::Noted(Event::SignalShown { by, signal, .. }) => {
-                    Some(format!("{}, by the {}", wording::signal(signal), wording::sender(*by)))
+                    let (follower, mut shown) = (&self.replay.follower, self.replay.follower.signals.shown.iter());
+                    let Some(nth) = shown.position(|shown| shown.time == now) else {
+                        return Some(format!("{}, by the {}", wording::signal(signal), wording::sender(*by)));
+                    };
+                    let sent = signal_words::sent(follower, &follower.signals.shown[nth]);
+                    let outcome = signal_words::outcome(follower, nth);
+                    Some(if outcome.is_empty() { sent } else { format!("{sent}; {outcome}") })
                 }
                 _ => None,
             }),
@@ -395,12 +412,9 @@ impl SeekableReplay {
                 _ => None,
             }),
             ReplayLandmark::FalseBelief => {
-                let moments = self.beliefs.until(now);
-                let held = &moments.last()?.held;
-                let told = belief_track::newly_false(moments).map(|id| {
-                    let (wrong, truth) = (held[id.index()].wrong, session.kitchen.true_value(session.state, id));
-                    let (thinks, truth) = beliefs::contrast(&session.kitchen, id, wrong.into(), truth);
-                    format!("{}: thinks {thinks}, {truth}", beliefs::name(session, id))
+                let told = self.false_beliefs().all().filter(|one| one.began == now).map(|one| {
+                    let (thinks, truth) = beliefs::contrast(&session.kitchen, one.aspect, one.thinks, one.truth);
+                    format!("{}: thinks {thinks}, {truth}", beliefs::name(session, one.aspect))
                 });
                 Some(told.collect::<Vec<_>>().join("; "))
             }

@@ -3,6 +3,7 @@
 
 use crate::apply::{ApplyError, apply};
 use crate::external::happenings::Happenings;
+use crate::history::false_beliefs::EstimatedFalseBeliefs;
 use crate::probes::{ProbeEvent, ProbeSubject, StartedProbe};
 use crate::tracker::TrackerEvent;
 use crate::wizard_log::WizardLog;
@@ -31,6 +32,7 @@ pub struct SessionFollower {
     /// As far as the participant's beliefs are known.
     pub episodes: FalseBeliefTracker,
     pub filter: BeliefFilter,
+    pub false_beliefs: EstimatedFalseBeliefs,
     pub repeats: SignalRepeatRule,
     pub signals: WizardLog,
     /// `None` if computing times are not measured.
@@ -113,6 +115,7 @@ impl SessionFollower {
             judged,
             episodes,
             filter,
+            false_beliefs: EstimatedFalseBeliefs::default(),
             repeats,
             signals: WizardLog::default(),
             timing,
@@ -176,6 +179,9 @@ impl SessionFollower {
             happenings.note(&self.session, stamped, &applied.change, judged);
         }
         self.estimate(stamped, &applied.change);
+        if self.estimates {
+            self.false_beliefs.note(&self.session, self.filter.belief(), stamped);
+        }
         Ok(applied)
     }
 

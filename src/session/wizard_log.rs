@@ -1,4 +1,5 @@
-//! Collects a wizard's signals event by event, for the measures of [`tomcom_core::measures::wizard_performance`].
+//! Collects the signals of a session event by event: with their reasons and effects, and, of a wizard's, for the measures of
+//! [`tomcom_core::measures::wizard_performance`].
 
 use serde::Serialize;
 
@@ -8,15 +9,49 @@ use crate::settings::ParticipantKind;
 use crate::{Event, Session, TimestampedEvent};
 use tomcom_core::base::text::count;
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::Sender;
-use tomcom_core::communication::recommendation::aspects_told;
+use tomcom_core::communication::recommendation::{Recommendation, SignalOption, SignalReason, aspects_told};
+use tomcom_core::communication::{Sender, Signal};
+use tomcom_core::kitchen::AspectId;
 use tomcom_core::measures::sequences::FalseBeliefEpisode;
-use tomcom_core::measures::wizard_performance::{FalseBeliefPeriod, WizardMeasures, WizardSignal};
+use tomcom_core::measures::wizard_performance::{
+    FalseBeliefPeriod, SignalVerdict, WizardMeasures, WizardSignal, verdicts,
+};
 
-/// The wizard's signals, each with what the wizard's screen showed when it was sent.
+/// A signal that was shown, with what is known of its reason and of its effect.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShownSignalRecord {
+    /// Sequence number of its event.
+    pub seq: u64,
+    /// Session time.
+    pub time: SessionTime,
+    pub by: Sender,
+    pub signal: Signal,
+    /// Why the assistant advised it, in the assistant's terms, or in the words of an external concept. Of a signal that a
+    /// wizard chose alone, why the assistant would have sent it.
+    pub reason: Option<SignalReason>,
+    pub words: Option<String>,
+    /// Its value by the last advice before it.
+    pub worth: Option<SignalOption>,
+    /// Session time; `None` while it is shown.
+    pub ended: Option<SessionTime>,
+    /// When the participant first looked at its place while it was shown.
+    pub seen: Option<SessionTime>,
+    /// In the form in which a wizard's signals are judged.
+    judged: WizardSignal,
+}
+
+impl ShownSignalRecord {
+    /// The state aspects that it reveals.
+    pub fn aspects(&self) -> &[AspectId] {
+        &self.judged.aspects
+    }
+}
+
+/// The signals that were shown, and what the wizard's screen showed when the wizard sent them.
 #[derive(Clone, Debug, Default)]
 pub struct WizardLog {
-    sent: Vec<(u64, SessionTime, WizardSignal)>,
+    pub shown: Vec<ShownSignalRecord>,
+    advice: Option<Recommendation>,
     screen: Option<WizardScreenContent>,
     seen: Vec<SignalsPerScreen>,
 }
@@ -44,37 +79,100 @@ impl WizardLog {
     pub fn note(&mut self, stamped: &TimestampedEvent, session: &Session) {
         match &stamped.event {
             Event::Screen(screen) => self.screen = Some(screen.clone()),
-            Event::SignalShown { by: Sender::Wizard, signal, .. } => {
-                let sent = WizardSignal {
+            Event::Advised(advice) => self.advice = Some(advice.clone()),
+            Event::SignalShown { by, signal, offer } => {
+                let judged = WizardSignal {
                     clock: session.trial_clock(stamped.time),
                     press: session.presses[tomcom_core::kitchen::Agent::Human.index()],
                     aspects: aspects_told(&session.kitchen, session.state, signal),
                     to_display_ms: None,
                     taken_back: false,
                 };
-                self.sent.push((stamped.seq, stamped.time, sent));
+                self.end(stamped.time);
+                self.shown.push(self.record(stamped, session, (*by, signal, *offer), judged));
+                if *by == Sender::Assistant {
+                    return;
+                }
                 match self.seen.iter_mut().find(|seen| seen.screen == self.screen) {
                     Some(seen) => seen.signals += 1,
                     None => self.seen.push(SignalsPerScreen { screen: self.screen.clone(), signals: 1 }),
                 }
             }
             Event::SignalDrawn { signal } => {
-                if let Some((_, time, sent)) = self.sent.iter_mut().find(|(seq, ..)| seq == signal) {
-                    sent.to_display_ms = Some(1000.0 * stamped.time.secs_since(*time));
+                if let Some(shown) = self.shown.iter_mut().find(|shown| shown.seq == *signal) {
+                    shown.judged.to_display_ms = Some(1000.0 * stamped.time.secs_since(shown.time));
                 }
             }
             Event::SignalEnded { reason: SignalEndReason::TakenBack } => {
-                if let Some((.., sent)) = self.sent.last_mut() {
-                    sent.taken_back = true;
+                let by_wizard = self.shown.iter_mut().rev().find(|shown| shown.by == Sender::Wizard);
+                if let Some(shown) = by_wizard {
+                    shown.judged.taken_back = true;
+                }
+            }
+            Event::Gaze(_) => {
+                let place = session.shown.as_ref().and_then(|shown| shown.location);
+                let looked = place.and_then(|place| session.gaze.looked_at[place.index()]);
+                let open = self.shown.last_mut().filter(|shown| shown.ended.is_none() && shown.seen.is_none());
+                if let Some(shown) = open {
+                    shown.seen = looked.filter(|looked| *looked >= shown.time);
                 }
             }
             _ => {}
         }
+        if session.shown.is_none() {
+            self.end(stamped.time);
+        }
     }
 
-    fn sent(&self) -> Vec<WizardSignal> {
-        self.sent.iter().map(|(.., sent)| sent.clone()).collect()
+    fn end(&mut self, now: SessionTime) {
+        if let Some(open) = self.shown.last_mut().filter(|shown| shown.ended.is_none()) {
+            open.ended = Some(now);
+        }
     }
+
+    fn record(
+        &self,
+        stamped: &TimestampedEvent,
+        session: &Session,
+        (by, signal, offer): (Sender, &Signal, Option<u64>),
+        judged: WizardSignal,
+    ) -> ShownSignalRecord {
+        let offer = offer.and_then(|seq| session.offers.find(seq)).map(|offer| &offer.advice);
+        let advice = self.advice.as_ref();
+        let option = |advice: &Recommendation| advice.options.iter().find(|option| option.signal == *signal).cloned();
+        // The reason of an advice is that of its first signal.
+        let of_it = advice.filter(|advice| match (&advice.best, advice.top()) {
+            (Some(best), _) => best == signal,
+            (None, top) => top.is_some_and(|top| top.signal == *signal),
+        });
+        let reason = offer.and_then(|offer| offer.reason.clone()).or(of_it.and_then(|advice| advice.reason.clone()));
+        let words = offer.and_then(|offer| offer.words.clone()).or(of_it.and_then(|advice| advice.words.clone()));
+        ShownSignalRecord {
+            seq: stamped.seq,
+            time: stamped.time,
+            by,
+            signal: signal.clone(),
+            reason,
+            words,
+            worth: advice.and_then(option),
+            ended: None,
+            seen: None,
+            judged,
+        }
+    }
+
+    /// The wizard's.
+    fn sent(&self) -> Vec<WizardSignal> {
+        self.shown.iter().filter(|shown| shown.by == Sender::Wizard).map(|shown| shown.judged.clone()).collect()
+    }
+}
+
+/// The judgement of each signal that was shown, of wizard and assistant alike; `None` where the participant's beliefs are not
+/// known, and before the trial is over.
+pub fn signal_verdicts(follower: &SessionFollower) -> Option<Vec<SignalVerdict>> {
+    let periods = false_belief_periods(follower).filter(|_| follower.session.is_trial_over())?;
+    let shown: Vec<WizardSignal> = follower.signals.shown.iter().map(|shown| shown.judged.clone()).collect();
+    Some(verdicts(&shown, &periods))
 }
 
 impl WizardSummary {

@@ -29,7 +29,7 @@ pub fn stream(name: &str) -> RerunStream {
     let free = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).and_then(|one| one.local_addr()).expect("a port");
     let identity = StreamIdentity { id: format!("viewers-{name}"), name: name.to_string(), facts: Vec::new() };
     let fixed = vec![EntityUpdate::new("fixed/for/ever", EntityData::Value(1.0))];
-    RerunStream::open(&identity, None, Some(free), fixed, moment(0, &["opening/entity"])).expect("a stream")
+    RerunStream::open(&identity, None, Some(free), (fixed, moment(0, &["opening/entity"])), false).expect("a stream")
 }
 
 /// Asks for a method of the service; `body` is one message of Protocol Buffers.

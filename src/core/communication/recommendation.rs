@@ -142,16 +142,29 @@ impl SignalReason {
 
     /// The false belief in words: "takes order 1 for tuna nigiri (0.83)"; "may take" if its probability is below 0.5.
     pub fn taken(&self) -> String {
+        self.taken_with("")
+    }
+
+    /// `named`: what stands before the probability.
+    fn taken_with(&self, named: &str) -> String {
         let SignalReason { aspect, believes, p_believes, .. } = self;
         let takes = if *p_believes < 0.5 { "may take" } else { "takes" };
-        format!("{takes} {} for {} ({p_believes:.2})", aspect.replace('_', " "), phrase(believes))
+        format!("{takes} {} for {} ({named}{p_believes:.2})", aspect.replace('_', " "), phrase(believes))
     }
 
     /// The signal's reason in words: "takes order 1 for tuna nigiri (0.83): would press "take tuna" instead of "take
     /// salmon"".
     pub fn words(&self) -> String {
+        self.leads_from(self.taken())
+    }
+
+    /// The same where there is room to name the probability.
+    pub fn words_with_unit(&self) -> String {
+        self.leads_from(self.taken_with("probability "))
+    }
+
+    fn leads_from(&self, taken: String) -> String {
         let said = |name: &str| name.replace('_', " ");
-        let taken = self.taken();
         match (&self.prevents, &self.instead) {
             (Some(button), Some(instead)) => {
                 format!("{taken}: would press \"{}\" instead of \"{}\"", said(button), said(instead))

@@ -48,6 +48,8 @@ pub struct ShownRecording {
     pub title: String,
     /// Number of films beside the kitchen.
     pub films: usize,
+    /// Whether the poses of the robot's arm are known.
+    pub has_arm: bool,
 }
 
 /// A property of a view: its path in the blueprint, and its components.
@@ -116,16 +118,18 @@ impl ViewerLayout {
 }
 
 fn alone(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
-    let arm = arm(lane, properties);
     let (beliefs, benefit) = (beliefs(lane, properties), benefit(lane, properties));
     let probes = lanes(lane, "Probes: answers and estimate", &["human/probes/**"], properties);
-    let joints = series(lane, "Joint angles (degrees)", &["robot/joints/**"], properties);
-    let forces = series(lane, "Force (N), hand (cm)", &["robot/force", "robot/hand_away"], properties);
-    let safety = lanes(lane, "Safety", &["robot/safety/**"], properties);
-    let tabs = Tabs::new([arm, beliefs, benefit, probes, joints, forces, safety]);
-    let below = Horizontal::new([overview(lane, properties), tabs.into()]).with_column_shares([3.0, 2.0]);
+    let mut views = vec![beliefs, benefit, probes];
+    if lane.has_arm {
+        views.insert(0, arm(lane, properties));
+        views.push(series(lane, "Joint angles (degrees)", &["robot/joints/**"], properties));
+        views.push(series(lane, "Force (N), hand (cm)", &["robot/force", "robot/hand_away"], properties));
+        views.push(lanes(lane, "Safety", &["robot/safety/**"], properties));
+    }
+    let below = Horizontal::new([overview(lane, properties), Tabs::new(views).into()]).with_column_shares([3.0, 2.0]);
     let left = Vertical::new([seen(lane, properties), below.into()]).with_row_shares([5.0, 3.0]);
-    let words = Tabs::new([now(lane), about(lane)]);
+    let words = Tabs::new([now(lane), page(lane, "Signals", "signals/page"), about(lane)]);
     let side = Vertical::new([words.into(), happened(lane, properties)]).with_row_shares([1.0, 1.0]);
     Horizontal::new([left.into(), side.into()]).with_column_shares([5.0, 3.0]).into()
 }
@@ -133,7 +137,7 @@ fn alone(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike
 /// Viewer layout for one of several recordings side by side.
 fn beside(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
     let curves = Tabs::new([overview(lane, properties), beliefs(lane, properties), benefit(lane, properties)]);
-    let told = Tabs::new([now(lane), about(lane)]);
+    let told = Tabs::new([now(lane), page(lane, "Signals", "signals/page"), about(lane)]);
     let words = Horizontal::new([told.into(), happened(lane, properties)]);
     Vertical::new([seen(lane, properties), curves.into(), words.into()]).with_row_shares([5.0, 3.0, 4.0]).into()
 }
@@ -246,18 +250,21 @@ fn lanes(lane: &ShownRecording, name: &str, entities: &[&str], properties: &mut 
 }
 
 fn overview(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
-    lanes(lane, "Errors, wrong beliefs, signals", &["error", "signal", "wrong_belief/**"], properties)
+    let entities = ["error", "look", "signal", "wrong_belief/**"];
+    lanes(lane, "Errors, looks, signals, wrong beliefs", &entities, properties)
+}
+
+fn page(lane: &ShownRecording, name: &str, entity: &str) -> ContainerLike {
+    let page = path(lane, entity);
+    TextDocumentView::new(titled(lane, name)).with_origin(page.clone()).with_contents([page]).into()
 }
 
 fn now(lane: &ShownRecording) -> ContainerLike {
-    let page = path(lane, "human/now");
-    TextDocumentView::new(titled(lane, "At this moment")).with_origin(page.clone()).with_contents([page]).into()
+    page(lane, "At this moment", "human/now")
 }
 
 fn about(lane: &ShownRecording) -> ContainerLike {
-    let page = path(lane, "about");
-    let name = titled(lane, "Recording, colours, times");
-    TextDocumentView::new(name).with_origin(page.clone()).with_contents([page]).into()
+    page(lane, "Recording, colours, times", "about")
 }
 
 /// A view of the list of events, each with its time on the trial's clock.

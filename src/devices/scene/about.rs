@@ -35,15 +35,16 @@ pub fn page(session: &Session) -> EntityUpdate {
 }
 
 const LEGEND: &str = "\
-**Colours**: a place's name, its curve of P(truth) and its bars of wrong beliefs have one colour. Bars of errors are red, \
-those of signals pink. In the list: the human brown, the robot blue, the wizard violet, the assistant green, errors red.
+**Colours**: a place's name, its curve of P(truth), its looks and its bars of wrong beliefs have one colour. Bars of errors are \
+red, of signals pink. In the list: the human brown, the robot blue, the wizard violet, the assistant green, errors red. \
+Buttons of the robot are blue, of the human brown, of both red.
 
 **P(truth)**: lines are the estimate, \u{25c6} is what a simulated participant believes itself before a press, crosses at 0 \
 are errors. A place is drawn from its first wrong belief on.
 
 **Gaze**: the circle is the newest gaze with the area that can be read, large dots are the last 0.5 s, small ones the last \
-1.5 s.
+1.5 s. Grey dots are uncertain: the eye tracker's confidence is too low, and the estimate does not use them.
 
 **To a moment**: click a time in the list of what happened, press the right mouse button in the bars or curves, or drag in \
-the line at the bottom. `+85.6s` is 1:25.6 on the trial's clock. In the bars, ctrl and the wheel zoom.
+the line at the bottom. `+85.619s` is 1:25.6 on the trial's clock. In the bars, ctrl and the wheel zoom.
 ";

@@ -8,17 +8,13 @@ use tomcom_arm::kinematics::{CollisionSolid, LinkShape};
 use tomcom_arm::physics::bodies::HandPose;
 use tomcom_arm::reach::BUTTON_M;
 use tomcom_arm::reaching::resting_place;
-use tomcom_arm::trajectory::JointMotion;
-use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, Button, ButtonId, Kitchen, KitchenChange, Press};
 use tomcom_core::robot::SafetyMode;
 use tomcom_core::robot::{ArmSample, JointAngles};
-use tomcom_session::history::wording;
+use tomcom_session::history::{event_words, wording};
 use tomcom_session::settings::ArmKind;
 use tomcom_session::{Event, Session, TimestampedEvent};
 
-/// Period of updates of a moving arm, in nanoseconds.
-const EVERY_NS: u64 = 50_000_000;
 /// Margin of the table around the buttons, and thickness of the table, in metres.
 const EDGE_M: f64 = 0.1;
 const THICK_M: f64 = 0.03;
@@ -51,26 +47,17 @@ const JOINTS: [(&str, SceneColour); 6] = [
     ("wrist 3", entity_content::FULL),
 ];
 
-/// Arm, table, buttons and hand as the viewer shows them.
+/// Arm, table, buttons and hand as the viewer shows them. Only of the physical arm: the poses of the timed arm are nowhere.
 #[derive(Clone, Debug)]
 pub struct RobotArmScene {
     arm: SerialArm,
-    /// Motion of the timed arm; `None` for the physical arm, whose samples are part of the session.
-    motion: Option<JointMotion>,
-    /// Session time and joint angles of the last update.
-    until: SessionTime,
-    joints: JointAngles,
     feels: bool,
 }
 
 impl RobotArmScene {
-    pub fn new(session: &Session) -> RobotArmScene {
-        let arm = SerialArm::ur5();
-        let motion = JointMotion::new(&session.kitchen, &arm);
-        let told = session.robot.arm.last.map(|(_, moment)| moment.joints);
-        let joints = told.unwrap_or_else(|| motion.at(session.time));
-        let motion = (session.spec.robot.arm == ArmKind::Timed).then_some(motion);
-        RobotArmScene { arm, motion, until: session.time, joints, feels: false }
+    /// `None` if the session records no poses of the arm.
+    pub fn new(session: &Session) -> Option<RobotArmScene> {
+        has_poses(session).then(|| RobotArmScene { arm: SerialArm::ur5(), feels: false })
     }
 
     /// Entities of the scene that do not change: table, buttons, and the shapes of the arm's links.
@@ -87,45 +74,23 @@ impl RobotArmScene {
             let series = SeriesStyle { name: format!("{name} (degrees)"), colour };
             rows.push(EntityUpdate::new(joint(name), EntityData::Line(series)));
         }
-        if self.motion.is_none() {
-            rows.extend(hand_shapes());
-            for (entity, name, colour) in [
-                (FORCE, "force on the arm (N)", entity_content::ROBOT),
-                (AWAY, "hand away (cm)", entity_content::HUMAN),
-            ] {
-                rows.push(EntityUpdate::new(entity, EntityData::Line(SeriesStyle { name: name.to_string(), colour })));
-            }
+        rows.extend(hand_shapes());
+        for (entity, name, colour) in
+            [(FORCE, "force on the arm (N)", entity_content::ROBOT), (AWAY, "hand away (cm)", entity_content::HUMAN)]
+        {
+            rows.push(EntityUpdate::new(entity, EntityData::Line(SeriesStyle { name: name.to_string(), colour })));
         }
         rows
     }
 
     pub fn opening(&self, session: &Session) -> Vec<EntityUpdate> {
-        let mut rows = places(&self.arm, &self.joints);
-        if self.motion.is_none() {
-            let rests = resting_place(&session.kitchen).coords.into();
-            let [x, y, z] = session.robot.arm.last.map_or(rests, |(_, moment)| moment.hand_m);
-            rows.push(EntityUpdate::new(HAND, EntityData::Place(at(x, y, z))));
-        }
+        let last = session.robot.arm.last.map(|(_, moment)| moment);
+        // Before the first sample the arm has no pose.
+        let mut rows = last.map_or_else(Vec::new, |moment| places(&self.arm, &moment.joints));
+        let rests = resting_place(&session.kitchen).coords.into();
+        let [x, y, z] = last.map_or(rests, |moment| moment.hand_m);
+        rows.push(EntityUpdate::new(HAND, EntityData::Place(at(x, y, z))));
         rows
-    }
-
-    /// Entity updates of the arm's motion, up to a session time.
-    pub fn until(&mut self, time: SessionTime) -> Vec<(SessionTime, Vec<EntityUpdate>)> {
-        let mut moments = Vec::new();
-        let Some(motion) = &self.motion else { return moments };
-        // An arm at rest needs no updates.
-        let end = time.min(motion.rests_at() + SessionTime(EVERY_NS));
-        let mut at = SessionTime((self.until.0 / EVERY_NS + 1) * EVERY_NS);
-        while at <= end {
-            let joints = motion.at(at);
-            if joints != self.joints {
-                self.joints = joints;
-                moments.push((at, places(&self.arm, &joints)));
-            }
-            at = at + SessionTime(EVERY_NS);
-        }
-        self.until = self.until.max(time);
-        moments
     }
 
     /// Entity updates of arm and hand from an event that has just been applied to the session.
@@ -135,38 +100,25 @@ impl RobotArmScene {
         stamped: &TimestampedEvent,
         change: &KitchenChange,
     ) -> Vec<EntityUpdate> {
-        let now = stamped.time;
         let kitchen = &session.kitchen;
         if let KitchenChange::Press { press: Press { agent, button, .. }, .. }
         | KitchenChange::UncountedPress { agent, button } = *change
         {
             return match agent {
                 Agent::Human => {
-                    // The mark has no words, which would cover those of the robot's goal; the page has them.
-                    let pressed = ScenePoint { words: String::new(), ..mark(kitchen, agent, button) };
-                    vec![EntityUpdate::new("human/hand", EntityData::Points(vec![pressed]))]
+                    vec![EntityUpdate::new("human/hand", EntityData::Points(vec![mark(kitchen, agent, button)]))]
                 }
-                Agent::Robot => self.goes_up(now),
+                Agent::Robot => no_goal(),
             };
         }
         match &stamped.event {
             Event::RobotIntends { .. } | Event::TrialResumed => {
-                let Some((button, _, until)) = session.robot.intention else { return Vec::new() };
-                if let Some(motion) = &mut self.motion {
-                    motion.set_out(now, button, until);
-                }
+                let Some((button, ..)) = session.robot.intention else { return Vec::new() };
                 vec![EntityUpdate::new("robot/goal", EntityData::Points(vec![mark(kitchen, Agent::Robot, button)]))]
-            }
-            Event::TrialPaused => {
-                if let Some(motion) = &mut self.motion {
-                    motion.stand(now);
-                }
-                Vec::new()
             }
             Event::RobotMoves(moment) => self.moves(moment),
             Event::RobotTouched { force_n } => {
-                // The words of the contact take the place of those of the goal.
-                let mut rows = self.goes_up(now);
+                let mut rows = no_goal();
                 rows.push(touched(session, format!("contact, {force_n:.0} N")));
                 rows
             }
@@ -178,20 +130,19 @@ impl RobotArmScene {
                 }
                 rows
             }
-            Event::RobotAborts { .. } => self.goes_up(now),
-            Event::TrialEnded { .. } | Event::TrialAborted { .. } | Event::SessionEnded => self.goes_up(now),
+            Event::RobotAborts { .. } => no_goal(),
+            Event::TrialEnded { .. } | Event::TrialAborted { .. } | Event::SessionEnded => no_goal(),
             _ => Vec::new(),
         }
     }
 
     /// Entity updates from a sample of the simulated arm: the arm's pose, the contact force, the hand.
     fn moves(&mut self, moment: &ArmSample) -> Vec<EntityUpdate> {
-        self.joints = moment.joints;
-        let mut rows = places(&self.arm, &self.joints);
+        let mut rows = places(&self.arm, &moment.joints);
         let [x, y, z] = moment.hand_m;
         rows.push(EntityUpdate::new(HAND, EntityData::Place(at(x, y, z))));
         let felt = (moment.force_n >= SHOWN_N).then(|| ScenePoint {
-            at_m: self.arm.tip(&self.joints).translation.vector.into(),
+            at_m: self.arm.tip(&moment.joints).translation.vector.into(),
             radius_m: FELT_M,
             words: String::new(),
             colour: entity_content::SIGNAL,
@@ -204,12 +155,40 @@ impl RobotArmScene {
         rows.push(EntityUpdate::new(AWAY, EntityData::Value(moment.hand_away_m * 100.0)));
         rows
     }
+}
 
-    fn goes_up(&mut self, now: SessionTime) -> Vec<EntityUpdate> {
-        if let Some(motion) = &mut self.motion {
-            motion.go_up(now);
+fn no_goal() -> Vec<EntityUpdate> {
+    vec![EntityUpdate::new("robot/goal", EntityData::Points(Vec::new()))]
+}
+
+/// Whether a session records the poses of the arm, so that they can be shown.
+pub fn has_poses(session: &Session) -> bool {
+    session.spec.robot.arm == ArmKind::Physics
+}
+
+/// What the robot does now, in words.
+pub fn robot_does(session: &Session) -> String {
+    let (robot, kitchen) = (&session.robot, &session.kitchen);
+    if robot.is_stopped_by_wizard() {
+        return "stopped by the wizard".to_string();
+    }
+    if robot.stopped {
+        return event_words::arm_stopped(robot.arm.mode, robot.arm.stopped_by_n, None);
+    }
+    if let Some((button, _, until)) = robot.intention {
+        let left_s = until.secs_since(session.time).max(0.0).ceil();
+        let by_itself = if robot.initiative { ", by its own initiative" } else { "" };
+        let name = wording::button(kitchen, Agent::Robot, button);
+        return format!("on its way to {name}{by_itself}, {left_s:.0} s left");
+    }
+    match &robot.idle {
+        _ if robot.held => "held by the wizard".to_string(),
+        Some((reason, buttons)) => {
+            let names: Vec<&str> =
+                buttons.iter().map(|&button| kitchen.button(Agent::Human, button).name.as_str()).collect();
+            wording::idle(*reason, &names, robot.gave_up, usize::MAX)
         }
-        vec![EntityUpdate::new("robot/goal", EntityData::Points(Vec::new()))]
+        None => String::new(),
     }
 }
 
@@ -258,7 +237,8 @@ fn mark(kitchen: &Kitchen, agent: Agent, button: ButtonId) -> ScenePoint {
     ScenePoint {
         at_m: [x, y, kitchen.table_height_m + BUTTON_M],
         radius_m: MARK_M,
-        words: format!("{}: {}", agent.name(), wording::button(kitchen, agent, button)),
+        // Words would cover the arm's tip and the buttons; the page says what is pressed.
+        words: String::new(),
         colour: entity_content::agent_colour(agent),
     }
 }

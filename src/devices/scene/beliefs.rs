@@ -2,14 +2,15 @@
 //! shown and believed.
 
 use super::entity_content::{self, EntityData, EntityUpdate, MarkShape, SeriesStyle, slug};
-use super::happenings::ShownError;
-use super::moment_on_clock;
+use super::happenings::JudgedPressShown;
+use super::{SceneInputs, moment_on_clock};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, AspectId, Kitchen, State, StateAspect};
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_core::mind::{RecordedBelief, RecordedEstimate};
-use tomcom_session::history::{event_words, wording};
+use tomcom_session::follower::SessionFollower;
+use tomcom_session::history::{event_words, signal_words, wording};
 use tomcom_session::{Event, Session, TimelineEntry, TimelineEvent, TimestampedEvent};
 
 /// Period of updates of the belief estimate between presses, in nanoseconds.
@@ -37,8 +38,8 @@ struct Held<'a> {
 #[derive(Clone, Debug, Default)]
 pub struct BeliefScene {
     tick: Option<u64>,
-    /// For each state aspect, what it is taken for and what it is truly; empty if the belief about the aspect is right.
-    taken_for: Vec<String>,
+    /// For each state aspect, when the false belief began whose bar is drawn.
+    drawn_since: Vec<Option<SessionTime>>,
     /// For each state aspect, whether its estimate was false once: its curve begins there, so that plot and legend
     /// have only what was believed wrong.
     is_drawn: Vec<bool>,
@@ -56,7 +57,9 @@ pub struct BeliefScene {
     signal_since: Option<SessionTime>,
     pub advice: String,
     estimate: String,
-    gaze: String,
+    /// What the robot does, and where the participant looks.
+    pub robot: String,
+    pub gaze: String,
     page: String,
 }
 
@@ -99,27 +102,30 @@ impl BeliefScene {
         session: &Session,
         stamped: &TimestampedEvent,
         new: &[TimelineEntry],
-        error: Option<ShownError<'_>>,
-        belief: Option<&DirichletBelief>,
+        pressed: Option<JudgedPressShown<'_>>,
+        inputs: SceneInputs<'_>,
     ) -> Vec<EntityUpdate> {
-        let mut rows = Vec::new();
+        let (mut rows, follower) = (Vec::new(), inputs.follower);
         for entry in new {
             if let TimelineEvent::Press { agent: Agent::Human, before, .. } = entry.what {
-                rows.extend(self.pressed(session, entry, error));
+                rows.extend(self.pressed(session, entry, pressed));
                 self.before = Some(before);
             }
         }
         match &stamped.event {
             Event::ParticipantBelieves(witness) => rows.extend(self.truly(session, witness)),
-            Event::BeliefEstimated(witness) => rows.extend(self.before_press(session, witness)),
-            _ => rows.extend(belief.and_then(|belief| self.between(session, stamped.time, belief)).unwrap_or_default()),
+            Event::BeliefEstimated(witness) => rows.extend(self.before_press(session, witness, follower)),
+            _ => {
+                let due = inputs.belief.filter(|_| self.is_due(stamped.time));
+                rows.extend(due.map(|belief| self.between(session, belief, follower)).unwrap_or_default());
+            }
         }
+        rows.extend(self.bars(session, follower));
         let shown = session.shown.as_ref();
         if shown.map(|shown| shown.since) != self.signal_since {
             self.signal_since = shown.map(|shown| shown.since);
-            self.signal = shown.map_or_else(String::new, |shown| {
-                format!("{}, by the {}", wording::signal(&shown.signal), wording::sender(shown.by))
-            });
+            let record = shown.and_then(|shown| follower.signals.shown.iter().rfind(|one| one.time == shown.since));
+            self.signal = record.map_or_else(String::new, |record| signal_words::sent(follower, record));
             rows.push(EntityUpdate::new(SIGNALS, EntityData::State(self.signal.clone(), entity_content::SIGNAL)));
         }
         let page = self.page();
@@ -134,14 +140,22 @@ impl BeliefScene {
         &mut self,
         session: &Session,
         entry: &TimelineEntry,
-        error: Option<ShownError<'_>>,
+        judged: Option<JudgedPressShown<'_>>,
     ) -> Option<EntityUpdate> {
         let (at, (_, pressed)) =
             (in_both_clocks(session.trial_clock(entry.time)), event_words::happening(&session.kitchen, &entry.what));
+        let error = judged.filter(|judged| judged.press.verdict.error);
         let was_error = std::mem::replace(&mut self.is_error, error.is_some());
         let own = std::mem::take(&mut self.own);
         let Some(error) = error else {
-            self.press = format!("**Last press**, {at}: {pressed}. No error.\n");
+            let verdict = match judged {
+                Some(judged) if judged.press.verdict.race => {
+                    "No error, but a race with the robot: it changed this place just before"
+                }
+                Some(_) => "No error",
+                None => "It does not count",
+            };
+            self.press = format!("**Last press**, {at}: {pressed}. {verdict}.\n");
             return was_error
                 .then(|| EntityUpdate::new(ERRORS, EntityData::State(String::new(), entity_content::ERROR)));
         };
@@ -151,7 +165,12 @@ impl BeliefScene {
         Some(EntityUpdate::new(ERRORS, EntityData::State(words, entity_content::ERROR)))
     }
 
-    fn before_press(&mut self, session: &Session, witness: &RecordedEstimate) -> Vec<EntityUpdate> {
+    fn before_press(
+        &mut self,
+        session: &Session,
+        witness: &RecordedEstimate,
+        follower: &SessionFollower,
+    ) -> Vec<EntityUpdate> {
         let kitchen = &session.kitchen;
         let held: Vec<Held> = witness
             .aspects
@@ -160,55 +179,76 @@ impl BeliefScene {
             .map(|(aspect, told)| Held { aspect, believes: kitchen.worded(&told.believes), p_truth: told.p_truth })
             .collect();
         if let Some(before) = self.before.take_if(|_| self.is_error) {
-            self.held_before = believed(kitchen, before, &held);
+            let since = |aspect| {
+                let began = follower.false_beliefs.before(aspect, session.time)?.began;
+                let lasted_s = session.age(began, session.time).as_secs_f64();
+                Some(format!("{} ({lasted_s:.1} s)", moment_on_clock(session.trial_clock_at(began))))
+            };
+            self.held_before = believed(kitchen, before, &held, since);
             self.press += &titled("Believed wrong before it, by the estimate", &self.held_before);
         }
-        self.estimated(session, &held)
+        self.estimated(session, &held, follower)
     }
 
-    /// `None` if no update is due.
-    fn between(&mut self, session: &Session, now: SessionTime, belief: &DirichletBelief) -> Option<Vec<EntityUpdate>> {
-        if !self.is_due(now) {
-            return None;
-        }
-        self.tick = Some(now.0 / EVERY_NS);
+    fn between(
+        &mut self,
+        session: &Session,
+        belief: &DirichletBelief,
+        follower: &SessionFollower,
+    ) -> Vec<EntityUpdate> {
+        self.tick = Some(session.time.0 / EVERY_NS);
         let kitchen = &session.kitchen;
-        self.gaze = session.looked_at().map_or_else(String::new, |place| kitchen.location(place).label());
         let of_aspect = |aspect: usize| {
             let believes = kitchen.aspects[aspect].wordings[belief.aspects[aspect].most_likely()].as_str();
             Held { aspect, believes, p_truth: belief.p_truth(kitchen, session.state, AspectId(aspect as u8)) }
         };
         let held: Vec<Held> = (0..kitchen.aspects.len()).map(of_aspect).collect();
-        Some(self.estimated(session, &held))
+        self.estimated(session, &held, follower)
     }
 
-    /// Entity updates of the estimate: curves of aspects that were false once, and lanes whose text has changed.
-    fn estimated(&mut self, session: &Session, held: &[Held]) -> Vec<EntityUpdate> {
+    /// Bars of false beliefs that begin or end.
+    fn bars(&mut self, session: &Session, follower: &SessionFollower) -> Vec<EntityUpdate> {
+        let kitchen = &session.kitchen;
+        self.drawn_since.resize(kitchen.aspects.len(), None);
+        let mut rows = Vec::new();
+        for (index, drawn) in self.drawn_since.iter_mut().enumerate() {
+            let aspect = AspectId(index as u8);
+            let held = follower.false_beliefs.at(aspect, session.time);
+            if held.map(|held| held.began) == *drawn {
+                continue;
+            }
+            *drawn = held.map(|held| held.began);
+            let words = held.map_or_else(String::new, |held| {
+                let [thinks, truth] = held.contents(kitchen);
+                format!("{thinks}, truly {truth}")
+            });
+            let data = EntityData::State(words, entity_content::of_aspect(aspect));
+            rows.push(EntityUpdate::new(wrong(&kitchen.aspects[index].name), data));
+        }
+        rows
+    }
+
+    /// Entity updates of the estimate: curves of aspects that were false once.
+    fn estimated(&mut self, session: &Session, held: &[Held], follower: &SessionFollower) -> Vec<EntityUpdate> {
         let kitchen = &session.kitchen;
         let mut rows = Vec::new();
-        self.taken_for.resize(held.len(), String::new());
         self.is_drawn.resize(held.len(), false);
-        for (one, (taken_for, is_drawn)) in held.iter().zip(self.taken_for.iter_mut().zip(&mut self.is_drawn)) {
-            let (name, is_false) = (&kitchen.aspects[one.aspect].name, one.p_truth < FALSE_BELOW);
-            *is_drawn |= is_false;
+        for (one, is_drawn) in held.iter().zip(&mut self.is_drawn) {
+            *is_drawn |= one.p_truth < FALSE_BELOW;
             if *is_drawn {
+                let name = &kitchen.aspects[one.aspect].name;
                 rows.push(EntityUpdate::new(estimated(name), EntityData::Value(one.p_truth)));
-            }
-            let now_taken_for = if is_false { taken_for_and_truth(kitchen, session.state, one) } else { String::new() };
-            if now_taken_for != *taken_for {
-                *taken_for = now_taken_for;
-                let colour = entity_content::of_aspect(AspectId(one.aspect as u8));
-                rows.push(EntityUpdate::new(wrong(name), EntityData::State(taken_for.clone(), colour)));
             }
         }
         let unsure = held.iter().filter(|one| (FALSE_BELOW..KNOWN).contains(&one.p_truth));
         let unsure: Vec<String> = unsure.map(|one| format!("{} {}", named(kitchen, one), percent(one))).collect();
-        let wrong = believed(kitchen, session.state, held);
+        let since = |aspect| {
+            let began = follower.false_beliefs.at(aspect, session.time)?.began;
+            Some(moment_on_clock(session.trial_clock_at(began)))
+        };
+        let wrong = believed(kitchen, session.state, held, since);
         self.estimate = match wrong.as_str() {
             "" => "\nNothing is believed wrong now, by the estimate.\n".to_string(),
-            wrong if self.is_error && wrong == self.held_before => {
-                "\nThe same is believed wrong now, by the estimate.\n".to_string()
-            }
             wrong => titled("Believed wrong now, by the estimate", wrong),
         };
         if !unsure.is_empty() {
@@ -225,7 +265,7 @@ impl BeliefScene {
         let held: Vec<Held> = aspects
             .map(|(aspect, told)| Held { aspect, believes: kitchen.worded(&told.believes), p_truth: told.p_truth })
             .collect();
-        let wrong = believed(kitchen, session.state, &held);
+        let wrong = believed(kitchen, session.state, &held, |_| None);
         self.own = titled("Believed wrong before it, by the simulated participant", &wrong);
         let is_false = |one: &&Held| one.p_truth < FALSE_BELOW;
         let row = |one: &Held| {
@@ -241,18 +281,20 @@ impl BeliefScene {
         };
         let signal = told("Signal on the display", &self.signal);
         let (advice, gaze) = (told("Assistant", &self.advice), told("Looks at", &self.gaze));
-        format!("{}{signal}{advice}{gaze}{}", self.press, self.estimate)
+        let robot = told("Robot", &self.robot);
+        format!("{}{signal}{advice}{robot}{gaze}{}", self.press, self.estimate)
     }
 }
 
 /// False beliefs in Markdown, the most certain first; empty without any. A list, since the viewer breaks lines in lists, not
-/// in tables.
-fn believed(kitchen: &Kitchen, state: State, held: &[Held]) -> String {
+/// in tables. `since`: when an aspect's false belief began, in words.
+fn believed(kitchen: &Kitchen, state: State, held: &[Held], since: impl Fn(AspectId) -> Option<String>) -> String {
     let mut wrong: Vec<&Held> = held.iter().filter(|one| one.p_truth < FALSE_BELOW).collect();
     wrong.sort_by(|a, b| a.p_truth.total_cmp(&b.p_truth));
     let line = |one: &&Held| {
         let (believes, truly) = (taken_for_what(kitchen, state, one), truth(kitchen, state, one.aspect));
-        format!("- **{}**: **{believes}**, truly {truly}; P(truth) {}\n", named(kitchen, one), percent(one))
+        let since = since(AspectId(one.aspect as u8)).map_or_else(String::new, |since| format!("; since {since}"));
+        format!("- **{}**: **{believes}**, truly {truly}; P(truth) {}{since}\n", named(kitchen, one), percent(one))
     };
     wrong.iter().map(line).collect()
 }
@@ -270,15 +312,10 @@ fn percent(held: &Held) -> String {
     format!("{:.0} %", 100.0 * held.p_truth)
 }
 
-/// "empty, truly nori".
-fn taken_for_and_truth(kitchen: &Kitchen, state: State, held: &Held) -> String {
-    format!("{}, truly {}", taken_for_what(kitchen, state, held), truth(kitchen, state, held.aspect))
-}
-
-/// A time on the trial's clock as the console shows it, and as the viewer does: "1:25.6 (+85.6s)".
+/// A time on the trial's clock as the console shows it, and as the viewer does: "1:25.6 (+85.619s)".
 fn in_both_clocks(time: SessionTime) -> String {
-    let tenths = time.0.div_ceil(100_000_000);
-    format!("{} (+{}.{}s)", moment_on_clock(time), tenths / 10, tenths % 10)
+    let ms = time.0 / 1_000_000;
+    format!("{} (+{}.{:03}s)", moment_on_clock(time), ms / 1000, ms % 1000)
 }
 
 /// The falsely believed value of a state aspect.

@@ -39,6 +39,8 @@ pub enum EntityData {
     Solids(Vec<CollisionSolid>, SceneColour),
     Place(Isometry3<f64>),
     Value(f64),
+    /// The curve has no value until the next one.
+    NoValue,
     Line(SeriesStyle),
     Marks(SeriesStyle, MarkShape),
     Words {
@@ -47,6 +49,8 @@ pub enum EntityData {
         colour: SceneColour,
     },
     Page(String),
+    /// A page that holds for the whole recording, in place of the one before.
+    WholePage(String),
     /// Text of a lane that shows a state over time, and the colour of its bar; an empty text clears the lane.
     State(String, SceneColour),
 }

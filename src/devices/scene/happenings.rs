@@ -1,15 +1,16 @@
 //! Text log of events, and the net benefit of signals, for Rerun.
 
-use super::EntityUpdate;
-use super::beliefs;
 use super::entity_content::{self, EntityData, MarkShape, SceneColour, SceneLogLevel, SeriesStyle, slug};
+use super::{EntityUpdate, moment_on_clock};
 use tomcom_core::communication::offer::{OfferCloseReason, OfferedAdvice};
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::communication::{Sender, Signal, signals};
 use tomcom_core::kitchen::{Agent, AspectId, Kitchen};
 use tomcom_core::measures::JudgedPress;
-use tomcom_session::history::{error_reasons, event_words, wording};
+use tomcom_session::follower::SessionFollower;
+use tomcom_session::history::{error_reasons, event_words, signal_words, wording};
 use tomcom_session::protocol::ProtocolEvent;
+use tomcom_session::wizard_log::ShownSignalRecord;
 use tomcom_session::{Event, Session, TimelineEntry, TimelineEvent, TimestampedEvent};
 
 /// Path of the error marks below the belief curves.
@@ -17,6 +18,9 @@ const ERROR_MARKS: &str = "human/errors/marks";
 /// Path of the line at the cost of communication, in the plot of net benefits.
 const COST_LINE: &str = "assistant/benefit/cost_line";
 
+/// Path of the page of all signals, and its text without any.
+const SIGNAL_PAGE: &str = "signals/page";
+const NO_SIGNAL: &str = "No signal was shown.";
 /// Path of the entity with all lines of the text log.
 const HAPPENED: &str = "happened";
 /// Largest number of characters of a line of the text log, which the viewer would cut at the edge of its view.
@@ -45,6 +49,7 @@ pub fn fixed(session: &Session) -> Vec<EntityUpdate> {
     rows.push(line(COST_LINE.to_string(), worth, entity_content::SIGNAL));
     let marks = SeriesStyle { name: "errors".to_string(), colour: entity_content::ERROR };
     rows.push(EntityUpdate::new(ERROR_MARKS, EntityData::Marks(marks, MarkShape::Cross)));
+    rows.push(EntityUpdate::new(SIGNAL_PAGE, EntityData::Page(NO_SIGNAL.to_string())));
     rows
 }
 
@@ -52,47 +57,68 @@ fn say(entity: &str, level: SceneLogLevel, text: String, colour: SceneColour) ->
     EntityUpdate::new(entity, EntityData::Words { level, text, colour })
 }
 
-/// Only the lines of the text log among these updates, in the order of time and cut to length; the rows of their own
-/// entities have the whole text.
+/// Only the lines of the text log among these updates, in the order of time and broken where the viewer would cut them.
 pub fn in_order(rows: &[EntityUpdate]) -> Vec<EntityUpdate> {
     let line = |row: &EntityUpdate| {
         let EntityData::Words { level, text, colour } = &row.shown else { return None };
-        Some(say(HAPPENED, *level, short(text), *colour))
+        Some(say(HAPPENED, *level, broken(text), *colour))
     };
     rows.iter().filter_map(line).collect()
 }
 
-/// The beginning of a text, in whole words.
-fn short(text: &str) -> String {
-    let Some((cut, _)) = text.char_indices().nth(LINE) else { return text.to_string() };
-    let start = &text[..cut];
-    let end = start.rfind(' ').filter(|end| *end > 0).unwrap_or(cut);
-    format!("{}…", start[..end].trim_end_matches([',', ';', ':']))
+/// A text in lines of whole words.
+fn broken(text: &str) -> String {
+    let (mut broken, mut length) = (String::new(), 0);
+    for word in text.split(' ') {
+        let letters = word.chars().count();
+        if length > 0 && length + 1 + letters > LINE {
+            broken.push('\n');
+            length = 0;
+        } else if !broken.is_empty() {
+            broken.push(' ');
+            length += 1;
+        }
+        broken.push_str(word);
+        length += letters;
+    }
+    broken
 }
 
 /// A line of the text log for a new entry of the timeline; presses that were judged errors are marked.
-pub fn entry(session: &Session, entry: &TimelineEntry, error: Option<ShownError<'_>>) -> EntityUpdate {
+pub fn entry(
+    session: &Session,
+    entry: &TimelineEntry,
+    pressed: Option<JudgedPressShown<'_>>,
+    follower: &SessionFollower,
+) -> EntityUpdate {
     let (who, text) = event_words::happening(&session.kitchen, &entry.what);
     let text = if who.is_empty() { text } else { format!("{who}: {text}") };
     match &entry.what {
         &TimelineEvent::Press { agent, no_effect, .. } => {
             let entity = format!("{}/presses", agent.name());
-            match error.filter(|_| agent == Agent::Human) {
-                Some(error) => {
+            match pressed.filter(|_| agent == Agent::Human) {
+                Some(judged) if judged.press.verdict.race => {
+                    let text = format!("{text} (race with the robot, no error)");
+                    say(&entity, SceneLogLevel::Warning, text, entity_content::HUMAN)
+                }
+                Some(error) if error.press.verdict.error => {
                     let text = format!("ERROR {}, {text}: {}", error.number, error.why(&session.kitchen));
                     say(&entity, SceneLogLevel::Error, text, entity_content::ERROR)
                 }
-                None if no_effect.is_none() => {
+                _ if no_effect.is_none() => {
                     say(&entity, SceneLogLevel::Info, text, entity_content::agent_colour(agent))
                 }
-                None => say(&entity, SceneLogLevel::Warning, text, entity_content::agent_colour(agent)),
+                _ => say(&entity, SceneLogLevel::Warning, text, entity_content::agent_colour(agent)),
             }
         }
-        TimelineEvent::Noted(Event::SignalShown { by: Sender::Wizard, .. }) => {
-            say("wizard/signals", SceneLogLevel::Info, text, entity_content::WIZARD)
-        }
-        TimelineEvent::Noted(Event::SignalShown { by: Sender::Assistant, .. }) => {
-            say("assistant/signals", SceneLogLevel::Info, text, entity_content::ASSISTANT)
+        TimelineEvent::Noted(Event::SignalShown { by, .. }) => {
+            let record = follower.signals.shown.iter().rfind(|shown| shown.time == entry.time);
+            let told = record.map_or(text, |record| format!("signal: {}", signal_words::sent(follower, record)));
+            let (entity, colour) = match by {
+                Sender::Wizard => ("wizard/signals", entity_content::WIZARD),
+                Sender::Assistant => ("assistant/signals", entity_content::ASSISTANT),
+            };
+            say(entity, SceneLogLevel::Info, told, colour)
         }
         TimelineEvent::Noted(Event::SignalEnded { .. }) => {
             say("wizard/signals", SceneLogLevel::Warning, text, entity_content::WIZARD)
@@ -108,55 +134,30 @@ pub fn entry(session: &Session, entry: &TimelineEntry, error: Option<ShownError<
     }
 }
 
-/// What a reviewer looks for in a recording.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SceneLandmark {
-    Error,
-    Signal,
-    /// By the estimate.
-    FalseBelief,
-}
-
-/// The landmark that begins or ends with this update of its lane, with its words; at its end the words are empty. `None`
-/// for other updates.
-pub fn landmark(row: &EntityUpdate) -> Option<(SceneLandmark, String)> {
-    let EntityData::State(text, _) = &row.shown else { return None };
-    let (kind, words) = match row.entity.as_str() {
-        beliefs::ERRORS => (SceneLandmark::Error, format!("error {text}")),
-        beliefs::SIGNALS => (SceneLandmark::Signal, format!("signal: {text}")),
-        lane => {
-            let aspect = wording::location(lane.strip_prefix(beliefs::WRONG_BELIEFS)?);
-            (SceneLandmark::FalseBelief, format!("false belief: {aspect} taken for {text}"))
-        }
-    };
-    Some((kind, if text.is_empty() { String::new() } else { words }))
-}
-
 pub fn protocol(event: &ProtocolEvent) -> EntityUpdate {
     say("trial/events", SceneLogLevel::Info, event_words::protocol(event), entity_content::QUIET)
 }
 
-/// A press that was an error.
+/// A press of the human as it was judged.
 #[derive(Clone, Copy, Debug)]
-pub struct ShownError<'a> {
-    /// Its number among the errors of the trial, from 1.
+pub struct JudgedPressShown<'a> {
+    /// Of an error, its number among the errors of the trial, from 1.
     pub number: usize,
     pub press: &'a JudgedPress,
 }
 
-impl ShownError<'_> {
+impl JudgedPressShown<'_> {
     /// Why the press was an error, with its cost and its cause.
     pub fn why(&self, kitchen: &Kitchen) -> String {
         error_reasons::with_cause(kitchen, self.press)
     }
 }
 
-/// The error in this event, if its press was one.
-pub fn error<'a>(stamped: &TimestampedEvent, judged: &'a [JudgedPress]) -> Option<ShownError<'a>> {
+/// The judgement of the press in this event, if it is one that counts.
+pub fn judged<'a>(stamped: &TimestampedEvent, judged: &'a [JudgedPress]) -> Option<JudgedPressShown<'a>> {
     let index = judged.binary_search_by_key(&stamped.seq, |press| press.seq).ok()?;
-    let press = judged.get(index).filter(|press| press.verdict.error)?;
     let number = judged[..=index].iter().filter(|press| press.verdict.error).count();
-    Some(ShownError { number, press })
+    Some(JudgedPressShown { number, press: &judged[index] })
 }
 
 pub fn mark() -> EntityUpdate {
@@ -169,17 +170,41 @@ pub struct AdviceScene {
     /// The signals that were advised so far: a curve begins where its signal is advised first, so that plot and legend have
     /// only those.
     advised: Vec<Signal>,
+    /// Those whose curves have a value now: a signal that was sent, or can be sent no more, has none.
+    valued: Vec<Signal>,
 }
 
 impl AdviceScene {
+    /// Ends the curves of signals without a value, other than these.
+    fn keep(&mut self, has_value: impl Fn(&Signal) -> bool) -> Vec<EntityUpdate> {
+        let (kept, over): (Vec<Signal>, Vec<Signal>) = self.valued.drain(..).partition(has_value);
+        self.valued = kept;
+        over.iter().map(|signal| EntityUpdate::new(benefit(signal), EntityData::NoValue)).collect()
+    }
+
+    /// A signal was sent: what it would save is past.
+    pub fn sent(&mut self, sent: &Signal) -> Vec<EntityUpdate> {
+        self.keep(|signal| signal != sent)
+    }
+
+    /// The trial is over.
+    pub fn ended(&mut self) -> Vec<EntityUpdate> {
+        self.keep(|_| false)
+    }
+
     /// Entity updates with the net benefits of signals, and with the recommendation in words.
     pub fn follow(&mut self, advice: &Recommendation, told: &str) -> Vec<EntityUpdate> {
         if let Some(best) = advice.best.as_ref().filter(|best| !self.advised.contains(best)) {
             self.advised.push(best.clone());
         }
-        let drawn = advice.options.iter().filter(|option| self.advised.contains(&option.signal));
-        let mut rows: Vec<EntityUpdate> =
-            drawn.map(|option| EntityUpdate::new(benefit(&option.signal), EntityData::Value(option.net))).collect();
+        let advised = &self.advised;
+        let drawn = advice.options.iter().filter(|option| advised.contains(&option.signal));
+        let drawn: Vec<_> = drawn.collect();
+        let mut rows = self.keep(|signal| drawn.iter().any(|option| option.signal == *signal));
+        rows.extend(
+            drawn.iter().map(|option| EntityUpdate::new(benefit(&option.signal), EntityData::Value(option.net))),
+        );
+        self.valued = drawn.into_iter().map(|option| option.signal.clone()).collect();
         rows.push(EntityUpdate::new(COST_LINE, EntityData::Value(0.0)));
         if !told.is_empty() {
             let text = format!("assistant {told}");
@@ -189,15 +214,52 @@ impl AdviceScene {
     }
 }
 
+/// The signals that were shown, each with what became of it.
+#[derive(Clone, Debug, Default)]
+pub struct SignalScene {
+    /// Number of signals whose end was told.
+    told: usize,
+    is_over: bool,
+}
+
+impl SignalScene {
+    /// Entity updates after an event that was just applied: a line for a signal that is over, and the page of all.
+    pub fn follow(&mut self, session: &Session, follower: &SessionFollower) -> Vec<EntityUpdate> {
+        let mut rows = Vec::new();
+        let shown = &follower.signals.shown;
+        let (told, was_over) = (self.told, self.is_over);
+        while shown.get(self.told).and_then(|shown| shown.ended).is_some_and(|ended| ended <= session.time) {
+            let signal = wording::signal(&shown[self.told].signal);
+            let text = format!("signal over, {signal}: {}", signal_words::outcome(follower, self.told));
+            rows.push(say("signals/over", SceneLogLevel::Info, text, entity_content::SIGNAL));
+            self.told += 1;
+        }
+        self.is_over = session.is_trial_over();
+        if self.told > told || self.is_over && !was_over {
+            rows.push(EntityUpdate::new(SIGNAL_PAGE, EntityData::WholePage(signal_page(follower, self.told))));
+        }
+        rows
+    }
+}
+
+/// The page of the signals, the first so many of which are over.
+fn signal_page(follower: &SessionFollower, over: usize) -> String {
+    let session = &follower.session;
+    let told = |(nth, shown): (usize, &ShownSignalRecord)| {
+        let at = moment_on_clock(session.trial_clock_at(shown.time));
+        let outcome = if nth < over { format!("\n- {}", signal_words::outcome(follower, nth)) } else { String::new() };
+        format!("**{}**, {at}: {}\n{outcome}\n\n", nth + 1, signal_words::sent(follower, shown))
+    };
+    match follower.signals.shown.as_slice() {
+        [] => NO_SIGNAL.to_string(),
+        shown => shown.iter().enumerate().map(told).collect(),
+    }
+}
+
 /// What the assistant recommends, in words; empty if it recommends nothing.
-pub fn advised(kitchen: &Kitchen, advice: &Recommendation) -> String {
-    let signal = advice.best.as_ref().map(|best| {
-        // An external concept can name a signal without its value, and has reasons in its own words.
-        let net = advice.top().map_or_else(String::new, |top| format!(" (net {:+.2})", top.net));
-        let reason = advice.reason.as_ref().map(|reason| wording::reason(kitchen, reason).words());
-        let why = reason.or_else(|| advice.words.clone()).map_or_else(String::new, |reason| format!("; {reason}"));
-        format!("advises: {}{net}{why}", wording::signal(best))
-    });
+pub fn advised(session: &Session, advice: &Recommendation) -> String {
+    let unit = session.spec.assistant.concept.name().unit();
+    let signal = signal_words::advised(&session.kitchen, unit, advice).map(|told| format!("advises: {told}"));
     let proposal =
         advice.proposal.as_ref().map(|proposal| format!("proposes: {}", wording::proposal(&proposal.presses)));
     [signal, proposal].into_iter().flatten().collect::<Vec<_>>().join("; ")

@@ -6,36 +6,39 @@
 
 mod about;
 mod arm;
+mod bars;
 mod beliefs;
 mod entities;
 pub mod entity_content;
 mod happenings;
+mod looks;
 mod pictures;
 mod probes;
 
 pub use about::{facts, title};
+pub use arm::has_poses;
+pub use bars::TimedBars;
 pub use entities::WIDE;
 pub use entity_content::{EntityData, EntityUpdate};
-pub use happenings::{SceneLandmark, landmark};
 pub use pictures::of_look as picture;
 
 use arm::RobotArmScene;
 use beliefs::BeliefScene;
-use happenings::AdviceScene;
+use happenings::{AdviceScene, SignalScene};
+use looks::LookScene;
 use probes::ProbeScene;
 
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::KitchenChange;
-use tomcom_core::measures::JudgedPress;
 use tomcom_core::mind::dirichlet::DirichletBelief;
+use tomcom_session::follower::SessionFollower;
 use tomcom_session::{Event, Session, TimestampedEvent, apply};
 
 /// Version of the scene's content and layout. A stream with another version is rebuilt from the log.
-pub const VERSION: u32 = 8;
+pub const VERSION: u32 = 9;
 
-/// A time on the trial's clock, in minutes, seconds and tenths, rounded up: what happens at it is past then.
+/// A time on the trial's clock, in minutes, seconds and tenths. As on the console's clock, what is smaller is left out.
 pub fn moment_on_clock(time: SessionTime) -> String {
-    let time = SessionTime(time.0.next_multiple_of(100_000_000));
     format!("{time}.{}", time.0 / 100_000_000 % 10)
 }
 
@@ -49,10 +52,11 @@ pub struct SceneUpdate {
     pub rows: Vec<EntityUpdate>,
 }
 
-/// What the scene shows beside the session itself: judged presses and the estimate of the participant's belief.
+/// What the scene shows beside the session itself.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneInputs<'a> {
-    pub judged: &'a [JudgedPress],
+    /// Judged presses, signals and false beliefs. It can have seen further events than the scene.
+    pub follower: &'a SessionFollower,
     /// The belief estimate after all events so far; `None` while further events have the same time.
     pub belief: Option<&'a DirichletBelief>,
 }
@@ -61,9 +65,11 @@ pub struct SceneInputs<'a> {
 #[derive(Clone, Debug)]
 pub struct SessionScene {
     session: Session,
-    arm: RobotArmScene,
+    arm: Option<RobotArmScene>,
     belief: BeliefScene,
     advice: AdviceScene,
+    signals: SignalScene,
+    looks: LookScene,
     probes: ProbeScene,
     /// Sequence number of the first event that the scene has not shown yet.
     next: u64,
@@ -78,6 +84,8 @@ impl SessionScene {
             arm: RobotArmScene::new(session),
             belief: BeliefScene::default(),
             advice: AdviceScene::default(),
+            signals: SignalScene::default(),
+            looks: LookScene::default(),
             probes: ProbeScene::default(),
             next,
             told: session.timeline.len(),
@@ -88,7 +96,7 @@ impl SessionScene {
     pub fn fixed(&self) -> Vec<EntityUpdate> {
         let kitchen = &self.session.kitchen;
         let mut rows = entities::fixed_places(&self.session);
-        rows.extend(self.arm.fixed(kitchen));
+        rows.extend(self.arm.iter().flat_map(|arm| arm.fixed(kitchen)));
         rows.extend(beliefs::fixed_beliefs(kitchen));
         rows.extend(happenings::fixed(&self.session));
         rows.push(about::page(&self.session));
@@ -99,7 +107,7 @@ impl SessionScene {
         let (kitchen, state) = (self.session.kitchen.clone(), self.session.state);
         let mut rows = entities::contents(&kitchen, None, state);
         rows.extend(entities::shown_signal(&self.session));
-        rows.extend(self.arm.opening(&self.session));
+        rows.extend(self.arm.iter().flat_map(|arm| arm.opening(&self.session)));
         let time = self.session.time;
         SceneUpdate { time, trial: self.session.trial_clock(time), step: self.step(), rows }
     }
@@ -114,36 +122,24 @@ impl SessionScene {
         self.belief.is_due(time)
     }
 
-    /// Applies the next event and returns the entity updates in the order of time. An event that is not valid in the
-    /// session's state, or that the scene has already shown, gives no updates.
-    pub fn see(&mut self, stamped: &TimestampedEvent, derived: SceneInputs<'_>) -> Vec<SceneUpdate> {
+    /// Applies the next event and returns the entity updates. An event that is not valid in the session's state, or that the
+    /// scene has already shown, gives no updates.
+    pub fn see(&mut self, stamped: &TimestampedEvent, inputs: SceneInputs<'_>) -> Option<SceneUpdate> {
         if stamped.seq < self.next {
-            return Vec::new();
+            return None;
         }
-        let mut moments = self.until(stamped.time);
-        let Ok(applied) = apply(&mut self.session, stamped) else { return moments };
+        let applied = apply(&mut self.session, stamped).ok()?;
         self.next = stamped.seq + 1;
-        let rows = self.changes(stamped, &applied.change, derived);
-        if !rows.is_empty() {
-            let trial = self.session.trial_clock(stamped.time);
-            moments.push(SceneUpdate { time: stamped.time, trial, step: stamped.seq, rows });
-        }
-        moments
-    }
-
-    /// Entity updates between events, up to a session time; these updates show the arm's motion.
-    pub fn until(&mut self, time: SessionTime) -> Vec<SceneUpdate> {
-        let step = self.step();
-        let session = &self.session;
-        let moment = |(time, rows)| SceneUpdate { time, trial: session.trial_clock(time), step, rows };
-        self.arm.until(time).into_iter().map(moment).collect()
+        let rows = self.changes(stamped, &applied.change, inputs);
+        let trial = self.session.trial_clock(stamped.time);
+        (!rows.is_empty()).then(|| SceneUpdate { time: stamped.time, trial, step: stamped.seq, rows })
     }
 
     fn changes(
         &mut self,
         stamped: &TimestampedEvent,
         change: &KitchenChange,
-        derived: SceneInputs<'_>,
+        inputs: SceneInputs<'_>,
     ) -> Vec<EntityUpdate> {
         let session = &self.session;
         let changed = change.states().into_iter();
@@ -151,27 +147,39 @@ impl SessionScene {
             changed.flat_map(|(before, after)| entities::contents(&session.kitchen, Some(before), after)).collect();
         match &stamped.event {
             Event::Gaze(sample) => rows.push(entities::gaze(session, *sample)),
-            Event::SignalShown { .. } | Event::SignalEnded { .. } => rows.extend(entities::shown_signal(session)),
+            Event::SignalShown { signal, .. } => {
+                rows.extend(entities::shown_signal(session));
+                rows.extend(self.advice.sent(signal));
+            }
+            Event::SignalEnded { .. } => rows.extend(entities::shown_signal(session)),
             Event::TrialEnded { .. } | Event::TrialAborted { .. } | Event::SessionEnded => {
                 rows.extend(entities::shown_signal(session));
+                rows.extend(self.advice.ended());
             }
             Event::Advised(advice) => {
-                self.belief.advice = happenings::advised(&session.kitchen, advice);
+                self.belief.advice = happenings::advised(session, advice);
                 rows.extend(self.advice.follow(advice, &self.belief.advice));
             }
             Event::OfferOpened(offer) => rows.push(happenings::offer_opened(offer)),
             Event::OfferClosed { reason, .. } => rows.push(happenings::offer_closed(*reason)),
-            Event::Probe(event) => rows.extend(self.probes.follow(session, event, derived.belief)),
+            Event::Probe(event) => rows.extend(self.probes.follow(session, event, inputs.belief)),
             Event::Protocol(event) => rows.push(happenings::protocol(event)),
             _ => {}
         }
-        let error = happenings::error(stamped, derived.judged);
+        let pressed = happenings::judged(stamped, &inputs.follower.judged);
         let new = &session.timeline[self.told..];
-        rows.extend(new.iter().map(|entry| happenings::entry(session, entry, error)));
+        if pressed.is_some() {
+            rows.extend(self.looks.pressed(session));
+        }
+        rows.extend(self.signals.follow(session, inputs.follower));
+        rows.extend(new.iter().map(|entry| happenings::entry(session, entry, pressed, inputs.follower)));
         rows.extend(happenings::in_order(&rows));
-        rows.extend(error.map(|_| happenings::mark()));
-        rows.extend(self.arm.follow(session, stamped, change));
-        rows.extend(self.belief.follow(session, stamped, new, error, derived.belief));
+        rows.extend(pressed.filter(|pressed| pressed.press.verdict.error).map(|_| happenings::mark()));
+        rows.extend(self.arm.iter_mut().flat_map(|arm| arm.follow(session, stamped, change)));
+        rows.extend(self.looks.follow(session, &stamped.event));
+        self.belief.gaze = self.looks.words(session);
+        self.belief.robot = arm::robot_does(session);
+        rows.extend(self.belief.follow(session, stamped, new, pressed, inputs));
         self.told = session.timeline.len();
         rows
     }

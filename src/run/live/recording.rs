@@ -110,13 +110,10 @@ impl Live {
         }
     }
 
-    /// Flushes the log and the stream to Rerun, and moves the robot's hand on the participant's display.
+    /// Flushes the log, and moves the robot's hand on the participant's display.
     pub(super) fn flush(&mut self) {
         self.move_robot();
         self.flush_log();
-        if let Some(viewing) = &mut self.viewing {
-            viewing.view_motion(self.clock.now());
-        }
     }
 
     pub(super) fn flush_log(&mut self) {

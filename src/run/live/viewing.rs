@@ -4,17 +4,13 @@
 use std::net::SocketAddr;
 
 use crate::console::console_model::RerunStreamStatus;
-use tomcom_core::base::time::SessionTime;
 use tomcom_devices::rerun::{StreamIdentity, uri};
 use tomcom_devices::rrd::{self, RRD_NAME};
-use tomcom_devices::scene::{SceneInputs, SessionScene, facts, title};
+use tomcom_devices::scene::{SceneInputs, SessionScene, facts, has_poses, title};
 use tomcom_devices::stream::RerunStream;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::log::{LOG_NAME, LogWriter};
 use tomcom_session::{LogHeader, Session, TimestampedEvent};
-
-/// Delay with which motion between events is streamed, so that no event with an earlier time can follow.
-const BEHIND: SessionTime = SessionTime(100_000_000);
 
 /// Streams a live session to Rerun viewers.
 pub(super) struct StreamedSession {
@@ -54,7 +50,7 @@ impl StreamedSession {
         let identity = StreamIdentity { id: format!("{name} {began} {whole}"), name: title(session, &name), facts };
         let address = spec.live.then(|| spec.address.parse::<SocketAddr>()).transpose();
         let server = address.map_err(|error| format!("{}: {error}", spec.address))?;
-        let stream = RerunStream::open(&identity, file.as_deref(), server, fixed, opening);
+        let stream = RerunStream::open(&identity, file.as_deref(), server, (fixed, opening), has_poses(session));
         let stream = stream.map_err(|error| error.to_string())?;
         if let Some(server) = stream.server {
             log.announce(&uri(server));
@@ -64,16 +60,11 @@ impl StreamedSession {
 
     /// Streams events that have just been recorded to the viewers.
     pub fn view(&mut self, events: &[TimestampedEvent], engine: &SessionEngine) {
-        let judged = engine.judged();
+        let follower = engine.follower();
         for (index, stamped) in events.iter().enumerate() {
             let belief = (index + 1 == events.len()).then(|| engine.belief());
-            self.stream.tell(self.scene.see(stamped, SceneInputs { judged, belief }));
+            self.stream.tell(self.scene.see(stamped, SceneInputs { follower, belief }).into_iter().collect());
         }
-    }
-
-    /// Streams the motion of the robot's arm since the last event.
-    pub fn view_motion(&mut self, now: SessionTime) {
-        self.stream.tell(self.scene.until(now - BEHIND));
     }
 
     /// Gives up the stream's file, to make room on a full disk; returns false if there is none.

@@ -2,7 +2,6 @@
 //! for a stream.
 
 use crate::console::console_model::RerunStreamStatus;
-use tomcom_core::base::time::SessionTime;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::features::{Feature, MissingFeature};
 use tomcom_session::log::LogWriter;
@@ -28,11 +27,6 @@ impl StreamedSession {
 
     /// Does nothing: this build has no stream to Rerun.
     pub fn view(&mut self, _: &[TimestampedEvent], _: &SessionEngine) {
-        match *self {}
-    }
-
-    /// Does nothing: this build has no stream to Rerun.
-    pub fn view_motion(&mut self, _: SessionTime) {
         match *self {}
     }
 

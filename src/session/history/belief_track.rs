@@ -85,12 +85,6 @@ pub struct BeliefHistory {
 }
 
 impl BeliefHistory {
-    /// Times at which a false belief begins in the estimate.
-    pub fn newly_false(&self) -> impl Iterator<Item = SessionTime> {
-        let begins = |moment: &&BeliefSnapshot| moment.wrong_since.contains(&Some(moment.time));
-        self.moments.iter().filter(begins).map(|moment| moment.time)
-    }
-
     /// Adds a snapshot, unless only gaze samples with little effect came since the previous one.
     pub fn note(&mut self, mut moment: BeliefSnapshot) {
         if let Some(last) = self.moments.last().filter(|_| moment.by_gaze) {
@@ -127,13 +121,6 @@ impl BeliefHistory {
     pub fn until(&self, time: SessionTime) -> &[BeliefSnapshot] {
         &self.moments[..self.moments.partition_point(|moment| moment.time <= time)]
     }
-}
-
-/// State aspects about which the belief became false in the last of these snapshots.
-pub fn newly_false(moments: &[BeliefSnapshot]) -> impl Iterator<Item = AspectId> {
-    let last = moments.last();
-    let begins = last.into_iter().flat_map(|last| last.wrong_since.iter().map(|since| *since == Some(last.time)));
-    begins.enumerate().filter(|(_, begins)| *begins).map(|(index, _)| AspectId(index as u8))
 }
 
 /// Start of the present false belief about a state aspect.

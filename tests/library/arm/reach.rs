@@ -1,63 +1,13 @@
-//! The motion of the arm to its buttons, and its inverse kinematics.
+//! The arm's inverse kinematics, and whether it reaches its buttons.
 
 use tomcom::run::files::read_kitchen;
 use tomcom_arm::inverse::{twist, wrapped};
 use tomcom_arm::kinematics::SerialArm;
 use tomcom_arm::reach::{ArmSurroundings, Obstruction};
-use tomcom_arm::reach::{BUTTON_M, ButtonPoses, UnreachableReason, out_of_reach};
-use tomcom_arm::trajectory::JointMotion;
+use tomcom_arm::reach::{ButtonPoses, UnreachableReason, out_of_reach};
 use tomcom_core::robot::JointAngles;
 
-use super::SUSHI;
 use crate::support::*;
-
-/// Where the tip of the arm is at this time, in metres.
-fn tip_m(arm: &SerialArm, motion: &JointMotion, now_s: f64) -> [f64; 3] {
-    let places = arm.forward(&motion.at(at(now_s)));
-    places.last().expect("links").translation.vector.into()
-}
-
-#[test]
-fn the_arm_touches_the_button_when_the_press_is_due_and_goes_over_the_others() {
-    let arm = SerialArm::ur5();
-    for layout in ["sushi", "burger"] {
-        let path = Path::new("layouts").join(layout).with_extension("toml");
-        let kitchen = read_kitchen(&path).expect("a layout of the project").kitchen;
-        let mut motion = JointMotion::new(&kitchen, &arm);
-        let top_m = kitchen.table_height_m + BUTTON_M;
-        let mut now_s = 1.0;
-        for (index, button) in kitchen.buttons[Agent::Robot.index()].iter().enumerate() {
-            let (from, until_s) = (tip_m(&arm, &motion, now_s), now_s + 2.4);
-            motion.set_out(at(now_s), ButtonId(index as u8), at(until_s));
-            let [x, y, z] = tip_m(&arm, &motion, until_s);
-            let away_m = (x - button.at_m[0]).hypot(y - button.at_m[1]).hypot(z - top_m);
-            assert!(away_m < 1e-3, "{layout}, {}: {away_m} m away", button.name);
-            let start = tip_m(&arm, &motion, now_s);
-            assert!((0..3).all(|axis| (start[axis] - from[axis]).abs() < 1e-9), "it sets out from where it is");
-            for share in 0..=100 {
-                let [_, _, z] = tip_m(&arm, &motion, now_s + 2.4 * f64::from(share) / 100.0);
-                let is_moving_along = (15..=80).contains(&share);
-                assert!(z > top_m - 1e-3 && (!is_moving_along || z > top_m + 0.04), "{layout}, {}: {z}", button.name);
-            }
-            motion.go_up(at(until_s));
-            now_s = until_s;
-        }
-        motion.go_up(at(now_s));
-        let [.., z] = tip_m(&arm, &motion, now_s + 1.0);
-        assert!(z > top_m + 0.07, "it goes up after the last press");
-    }
-}
-
-#[test]
-fn an_arm_that_stands_stays_where_it_is() {
-    let arm = SerialArm::ur5();
-    let mut motion = JointMotion::new(&SUSHI, &arm);
-    motion.set_out(at(1.0), ButtonId(3), at(3.0));
-    let there = motion.at(at(1.7));
-    assert_ne!(there, motion.at(at(1.0)));
-    motion.stand(at(1.7));
-    assert_eq!(motion.at(at(60.0)), there);
-}
 
 #[test]
 fn every_inverse_solution_reproduces_the_pose_and_the_joints_it_came_from_are_among_them() {

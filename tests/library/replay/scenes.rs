@@ -1,8 +1,13 @@
 //! The scene that Rerun shows of a session.
 
+use tomcom::run::seekable_replay::SeekableReplay;
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_devices::scene::{EntityData, EntityUpdate, SceneInputs, SceneUpdate, SessionScene};
 use tomcom_session::history::{error_reasons, wording};
+use tomcom_session::replay::ReplayLandmark;
+use tomcom_session::settings::Condition;
+use tomcom_session::wizard_log::signal_verdicts;
+use tomcom_study::analysis::annotations::AnnotationCollector;
 
 use super::{SESSIONS, folder, session, simulated};
 use crate::support::*;
@@ -14,8 +19,8 @@ fn shown(recording: &Path) -> (Vec<SceneUpdate>, Vec<TimestampedEvent>) {
     let mut moments = vec![scene.opening()];
     let mut events = Vec::new();
     while let Some(line) = replay.step().expect("events of a session") {
-        let (judged, belief) = (&replay.follower.judged[..], Some(replay.follower.filter.belief()));
-        moments.extend(scene.see(&line.stamped, SceneInputs { judged, belief }));
+        let (follower, belief) = (&replay.follower, Some(replay.follower.filter.belief()));
+        moments.extend(scene.see(&line.stamped, SceneInputs { follower, belief }));
         events.push(line.stamped);
     }
     (moments, events)
@@ -70,12 +75,13 @@ fn a_scene_shows_every_press_signal_and_sample_once_at_its_time() {
         };
         let happened = lines("happened");
         assert!(happened.len() > presses[0].len() + presses[1].len(), "{name}: more than presses happened");
-        // Every line stands in the list of what happened once more, cut to the width of the view.
+        // Every line stands in the list of what happened once more, broken to the width of the view.
         let mut whole: Vec<String> = lines("").into_iter().collect();
         for line in &happened {
-            assert!(line.chars().count() <= 77, "{name}: the viewer would cut {line}");
-            let start = line.strip_suffix('…').unwrap_or(line);
-            let is_it = |text: &String| *text == *line || (line.ends_with('…') && text.starts_with(start));
+            let is_narrow = |line: &str| line.chars().count() <= 77;
+            assert!(line.lines().all(is_narrow), "{name}: the viewer would cut {line}");
+            let told = line.replace('\n', " ");
+            let is_it = |text: &String| *text == told;
             // The line itself is among the lines, too.
             let of = whole.iter().position(|text| *text == *line).expect("the line");
             whole.remove(of);
@@ -276,4 +282,103 @@ fn a_scene_shows_answers_of_probes_beside_the_estimate() {
         }
     }
     assert!(answers > 3, "{answers} answers");
+}
+
+#[test]
+fn false_beliefs_are_the_same_in_replay_review_and_annotations() {
+    let recording = Path::new("tests/golden/format-3-offers.jsonl");
+    let mut replay = RecordingReplay::open(recording).expect("a recording");
+    let mut collector = AnnotationCollector::default();
+    while let Some(event) = replay.step().expect("events of a session") {
+        collector.take(&event.stamped, &replay.follower);
+    }
+    let kitchen = replay.session().kitchen.clone();
+    let name = |aspect: &str| wording::location(aspect);
+    let mut held: Vec<(SessionTime, String, String)> = Vec::new();
+    for one in replay.follower.false_beliefs.all() {
+        let [thinks, truth] = one.contents(&kitchen);
+        assert!(thinks != truth && one.ended.is_none_or(|ended| ended > one.began), "{one:?}");
+        held.push((one.began, name(&kitchen.aspects[one.aspect.index()].name), format!("{thinks}, truly {truth}")));
+    }
+    assert!(held.len() > 5, "{} false beliefs", held.len());
+    // The replay counts them.
+    let film = SeekableReplay::open(recording).expect("it opens");
+    let began: Vec<SessionTime> = held.iter().map(|(began, ..)| *began).collect();
+    assert_eq!(film.landmarks(ReplayLandmark::FalseBelief), began);
+    // The review has a bar for each: the last row of a time holds.
+    let (moments, _) = shown(recording);
+    let mut bars = BTreeMap::new();
+    for moment in &moments {
+        for row in &moment.rows {
+            let (Some(place), EntityData::State(text, _)) = (row.entity.strip_prefix("wrong_belief/"), &row.shown)
+            else {
+                continue;
+            };
+            bars.insert((moment.time, name(place)), text.clone());
+        }
+    }
+    let bars: BTreeSet<_> = bars
+        .into_iter()
+        .filter(|(_, text)| !text.is_empty())
+        .map(|((time, place), text)| (time, place, text))
+        .collect();
+    assert_eq!(bars, held.iter().cloned().collect());
+    // So have annotations.
+    let about = ("a recording".to_string(), None);
+    let annotations = collector.finish(&replay.follower, about, &BTreeMap::new(), &[], false);
+    let mut exported = BTreeSet::new();
+    for tier in &annotations.tiers {
+        let Some(place) = tier.name.strip_prefix("false belief (estimate): ") else { continue };
+        for one in &tier.annotations {
+            let words = one.words.strip_prefix("thinks ").expect("what is thought").to_string();
+            exported.insert((SessionTime::from_secs_f64(one.begin_s), place.to_string(), words));
+        }
+    }
+    let near = |time: SessionTime| SessionTime(time.0 / 1000);
+    let rounded = |all: BTreeSet<(SessionTime, String, String)>| -> BTreeSet<_> {
+        all.into_iter().map(|(time, place, words)| (near(time + SessionTime(500)), place, words)).collect()
+    };
+    assert_eq!(rounded(exported), rounded(held.into_iter().collect()));
+}
+
+#[test]
+fn a_signal_has_its_reason_as_long_as_it_is_shown_and_then_what_became_of_it() {
+    let (mut files, out) = (session("default.toml"), folder("scene-signals"));
+    (files.spec.trial.condition, files.spec.trial.seconds, files.spec.seed) = (Condition::Assistant, 240.0, 7);
+    simulate_into(files, 1, &out);
+    let recording = only_recording(&out);
+    let (moments, _) = shown(&recording);
+    let mut replay = RecordingReplay::open(&recording).expect("a recording");
+    replay.run().expect("events of a session");
+    let signals = &replay.follower.signals.shown;
+    let verdicts = signal_verdicts(&replay.follower).expect("a simulated participant's beliefs are known");
+    assert!(signals.len() > 2 && verdicts.len() == signals.len(), "{} signals", signals.len());
+    let bars = texts(&moments, "signal");
+    let pages = texts(&moments, "human/now");
+    for signal in signals {
+        let (_, bar) = bars.iter().find(|(moment, _)| moment.time == signal.time).expect("a bar");
+        assert!(bar.contains("(probability ") && bar.contains(" after the cost of a signal"), "{bar}");
+        let ended = signal.ended.expect("the trial is over");
+        let while_shown = pages.iter().filter(|(moment, _)| moment.time > signal.time && moment.time < ended);
+        for (moment, page) in while_shown {
+            assert!(page.contains(bar), "at {}: {page}", moment.time);
+        }
+    }
+    let whole = moments.iter().flat_map(|moment| &moment.rows).filter_map(|row| match &row.shown {
+        EntityData::WholePage(text) => Some(text),
+        _ => None,
+    });
+    let page = whole.last().expect("a page of the signals");
+    for verdict in verdicts {
+        assert!(page.contains(&format!("judged {}", verdict.name())), "{verdict:?}: {page}");
+    }
+    assert!(page.contains("looked at after ") || page.contains("not looked at"), "{page}");
+    // The value of a signal that was sent is past.
+    let ends = moments.iter().flat_map(|moment| &moment.rows).filter(|row| row.shown == EntityData::NoValue);
+    assert!(ends.count() >= signals.len());
+    // Looks are bars and words, the robot is told, and the timed arm, whose poses are nowhere, is not drawn.
+    assert!(texts(&moments, "look").iter().any(|(_, text)| text.starts_with("storage: ")));
+    assert!(pages.iter().any(|(_, page)| page.contains("; before: ")));
+    assert!(pages.iter().any(|(_, page)| page.contains("**Robot**: on its way to ")));
+    assert!(!moments.iter().flat_map(|moment| &moment.rows).any(|row| row.entity.starts_with("robot/arm")));
 }

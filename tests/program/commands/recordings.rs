@@ -213,6 +213,10 @@ fn errors_of_a_recording_are_listed_as_commands_that_open_the_viewer_there() {
     let listed = list(&["--errors"]);
     assert!(listed.lines().all(|line| line.contains(", error ")), "{listed}");
     assert!(list(&["--signals"]).lines().all(|line| line.contains(", signal: ")));
+    // What is as short as the estimate tells can be left out.
+    let least = list(&["--beliefs", "--least", "5"]).lines().count();
+    assert!(least < list(&["--beliefs"]).lines().count(), "{least}");
+    assert!(complaint(&["review", recording, "--least", "5"]).contains("--beliefs"));
     let errors = listed.lines().count() as u64;
     assert_eq!(Value::from(errors), figures(&["replay", recording, "--format", "json"], 0)["errors"]);
 }

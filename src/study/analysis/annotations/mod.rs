@@ -11,15 +11,14 @@ pub mod vtt;
 use std::collections::BTreeMap;
 
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::{Agent, AspectId, Kitchen};
+use tomcom_core::kitchen::{Agent, Kitchen};
 use tomcom_core::measures::raters::RaterCodes;
 use tomcom_core::measures::raters::{ErrorCauseCode, ErrorCauseKind};
 use tomcom_session::error_list::ListedError;
 use tomcom_session::follower::SessionFollower;
-use tomcom_session::history::belief_track::BeliefSnapshot;
 use tomcom_session::history::{event_words, wording};
 use tomcom_session::log::video_file::AttachedFilm;
-use tomcom_session::{Event, Session, TimestampedEvent};
+use tomcom_session::{Event, TimestampedEvent};
 
 /// Prefix of tiers, and of subjects, with a rater's codes: "codes R1".
 const CODES: &str = "codes ";
@@ -76,7 +75,6 @@ pub struct RecordingAnnotations {
 pub struct AnnotationCollector {
     presses: [Vec<(SessionTime, String)>; 2],
     signals: Vec<(SessionTime, Option<SessionTime>, String)>,
-    beliefs: BTreeMap<AspectId, Vec<(SessionTime, Option<SessionTime>, String)>>,
     notes: Vec<(u64, SessionTime, String)>,
     end: SessionTime,
 }
@@ -84,7 +82,7 @@ pub struct AnnotationCollector {
 impl AnnotationCollector {
     /// Takes an event that was just applied.
     pub fn take(&mut self, stamped: &TimestampedEvent, follower: &SessionFollower) {
-        let (session, now) = (&follower.session, stamped.time);
+        let now = stamped.time;
         self.end = now;
         match &stamped.event {
             Event::Press { agent, button, .. } => {
@@ -105,31 +103,11 @@ impl AnnotationCollector {
             }
             _ => {}
         }
-        if !stamped.event.is_sample() {
-            self.note_beliefs(session, follower, now);
-        }
     }
 
     fn end_signal(&mut self, now: SessionTime) {
         if let Some((_, end @ None, _)) = self.signals.last_mut() {
             *end = Some(now);
-        }
-    }
-
-    /// The false beliefs of the estimate, as the console marks them.
-    fn note_beliefs(&mut self, session: &Session, follower: &SessionFollower, now: SessionTime) {
-        let kitchen = &session.kitchen;
-        let moment = BeliefSnapshot::new(kitchen, session.state, follower.filter.belief(), now, false);
-        for (index, held) in moment.held.iter().enumerate() {
-            let aspect = AspectId(index as u8);
-            let is_false = session.is_running() && held.is_false();
-            let spells = self.beliefs.entry(aspect).or_default();
-            match spells.last_mut() {
-                Some((_, None, _)) if is_false => {}
-                Some((_, end @ None, _)) => *end = Some(now),
-                _ if is_false => spells.push((now, None, believed(kitchen, aspect, held.wrong))),
-                _ => {}
-            }
         }
     }
 
@@ -167,13 +145,17 @@ impl AnnotationCollector {
         ];
         if !blind {
             tiers.push(spells("signals".to_string(), self.signals));
-            for (aspect, all) in self.beliefs {
-                if !all.is_empty() {
-                    let name = format!(
-                        "false belief (estimate): {}",
-                        wording::location(&kitchen.aspects[aspect.index()].name)
-                    );
-                    tiers.push(spells(name, all));
+            for (index, aspect) in kitchen.aspects.iter().enumerate() {
+                let of_aspect = follower.false_beliefs.all().filter(|one| one.aspect.index() == index).map(|one| {
+                    let [thinks, truth] = one.contents(kitchen);
+                    (one.began, one.ended, format!("thinks {thinks}, truly {truth}"))
+                });
+                let of_aspect: Vec<_> = of_aspect.collect();
+                if !of_aspect.is_empty() {
+                    tiers.push(spells(
+                        format!("false belief (estimate): {}", wording::location(&aspect.name)),
+                        of_aspect,
+                    ));
                 }
             }
             let notes = self.notes.into_iter().map(|(_, time, words)| (time, words));
@@ -212,10 +194,6 @@ impl AnnotationCollector {
         let (recording, started) = about;
         RecordingAnnotations { recording, started, tiers, films, code_words: all_code_words(kitchen), before_film }
     }
-}
-
-fn believed(kitchen: &Kitchen, aspect: AspectId, value: u8) -> String {
-    format!("thinks {}", kitchen.aspects[aspect.index()].wordings[usize::from(value)])
 }
 
 /// A code in words: "slip", "belief: cooking_pot".

@@ -1,0 +1,116 @@
+//! The false beliefs of the estimate as intervals of time: the one source for replays, the review and exports.
+
+use crate::{Session, TimestampedEvent, TrialPhase};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::{AspectId, Kitchen};
+use tomcom_core::measures::sequences::FALSE_BELOW;
+use tomcom_core::mind::dirichlet::DirichletBelief;
+
+/// Where only gaze changes the estimate, false beliefs begin and end at the first sample of such a period, in nanoseconds;
+/// other events count at once.
+const EVERY_NS: u64 = 200_000_000;
+
+/// One false belief about one state aspect, by the estimate. Another truth, or another wrong value that is believed most, is
+/// another false belief.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct EstimatedFalseBelief {
+    pub aspect: AspectId,
+    /// Session time.
+    pub began: SessionTime,
+    /// Session time; `None` while it is held.
+    pub ended: Option<SessionTime>,
+    /// Index of the wrong value that is most probably believed.
+    pub thinks: usize,
+    /// Index of the true value.
+    pub truth: usize,
+}
+
+impl EstimatedFalseBelief {
+    /// What is believed and what is true, in words.
+    pub fn contents<'a>(&self, kitchen: &'a Kitchen) -> [&'a str; 2] {
+        [self.thinks, self.truth].map(|value| kitchen.aspects[self.aspect.index()].wordings[value].as_str())
+    }
+}
+
+/// The false beliefs of a trial so far, in the order of their beginnings.
+#[derive(Clone, Debug, Default)]
+pub struct EstimatedFalseBeliefs {
+    all: Vec<EstimatedFalseBelief>,
+    /// For each state aspect, the index of its last false belief.
+    last: Vec<Option<usize>>,
+    tick: Option<u64>,
+}
+
+impl EstimatedFalseBeliefs {
+    /// Takes the estimate after an event that was just applied. Before the trial and after it nothing is believed falsely;
+    /// in a pause beliefs last.
+    pub(crate) fn note(&mut self, session: &Session, belief: &DirichletBelief, stamped: &TimestampedEvent) {
+        let (kitchen, state, now) = (&session.kitchen, session.state, stamped.time);
+        let tick = Some(now.0 / EVERY_NS);
+        if stamped.event.is_sample() && self.tick == tick {
+            return;
+        }
+        self.tick = tick;
+        self.last.resize(kitchen.aspects.len(), None);
+        let is_trial = matches!(session.phase, TrialPhase::Running | TrialPhase::Paused);
+        for index in 0..kitchen.aspects.len() {
+            let aspect = AspectId(index as u8);
+            let is_false = is_trial && belief.p_truth(kitchen, state, aspect) < FALSE_BELOW;
+            let held = is_false.then(|| {
+                let (mean, truth) = (belief.aspects[index].mean(), kitchen.true_value(state, aspect));
+                let others = (0..mean.len()).filter(|&value| value != truth);
+                let thinks = others.reduce(|best, value| if mean[value] > mean[best] { value } else { best });
+                (thinks.unwrap_or(truth), truth)
+            });
+            let open = self.last[index].map(|last| &mut self.all[last]).filter(|last| last.ended.is_none());
+            if open.as_ref().map(|open| (open.thinks, open.truth)) == held {
+                continue;
+            }
+            if let Some(open) = open {
+                open.ended = Some(now);
+            }
+            if let Some((thinks, truth)) = held {
+                self.last[index] = Some(self.all.len());
+                self.all.push(EstimatedFalseBelief { aspect, began: now, ended: None, thinks, truth });
+            }
+        }
+    }
+
+    /// All but those that were over when other events of the same time had been applied.
+    pub fn all(&self) -> impl DoubleEndedIterator<Item = &EstimatedFalseBelief> {
+        self.all.iter().filter(|one| one.ended != Some(one.began))
+    }
+
+    /// Those about an aspect, the last one first.
+    fn of(&self, aspect: AspectId) -> impl Iterator<Item = &EstimatedFalseBelief> {
+        let last = self.last.get(aspect.index()).copied().flatten();
+        let until = last.map_or(0, |last| last + 1);
+        let those = self.all[..until].iter().rev().filter(move |one| one.aspect == aspect);
+        those.filter(|one| one.ended != Some(one.began))
+    }
+
+    /// The false belief about an aspect that is held at a time.
+    pub fn at(&self, aspect: AspectId, time: SessionTime) -> Option<&EstimatedFalseBelief> {
+        let last = self.of(aspect).find(|one| one.began <= time);
+        last.filter(|last| last.ended.is_none_or(|ended| time < ended))
+    }
+
+    /// The false belief about an aspect that was held just before a time.
+    pub fn before(&self, aspect: AspectId, time: SessionTime) -> Option<&EstimatedFalseBelief> {
+        let last = self.of(aspect).find(|one| one.began < time);
+        last.filter(|last| last.ended.is_none_or(|ended| time <= ended))
+    }
+
+    /// When the belief about an aspect that is false at a time became right; `None` if it has not.
+    pub fn corrected(&self, aspect: AspectId, time: SessionTime) -> Option<SessionTime> {
+        let mut until = time;
+        let later = self.all().filter(|one| one.aspect == aspect && one.ended.is_none_or(|ended| ended > time));
+        for one in later {
+            if one.began > until {
+                break;
+            }
+            until = one.ended?;
+        }
+        Some(until)
+    }
+}

@@ -1,0 +1,90 @@
+//! A signal that was shown, in words: why it was sent, what it was worth, and what became of it.
+
+use crate::follower::SessionFollower;
+use crate::history::wording;
+use crate::wizard_log::{ShownSignalRecord, signal_verdicts};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::concept::BenefitUnit;
+use tomcom_core::communication::recommendation::{Recommendation, SignalOption, SignalReason};
+use tomcom_core::kitchen::{AspectId, Kitchen};
+
+/// "saves 0.43 presses, +0.18 after the cost of a signal".
+pub fn worth(unit: BenefitUnit, option: &SignalOption) -> String {
+    let SignalOption { benefit, net, .. } = option;
+    match unit {
+        BenefitUnit::Deviation => format!("belief off by {benefit:.2}, {net:+.2} from the threshold"),
+        BenefitUnit::Presses | BenefitUnit::None => {
+            format!("saves {benefit:.2} presses, {net:+.2} after the cost of a signal")
+        }
+    }
+}
+
+/// "the human takes order 1 for tuna nigiri (probability 0.83): would press …".
+fn reason(kitchen: &Kitchen, reason: Option<&SignalReason>, words: Option<&String>) -> Option<String> {
+    let told = reason.map(|reason| format!("the human {}", wording::reason(kitchen, reason).words_with_unit()));
+    told.or_else(|| words.cloned())
+}
+
+/// The signal that is advised, with its value and its reason.
+pub fn advised(kitchen: &Kitchen, unit: BenefitUnit, advice: &Recommendation) -> Option<String> {
+    let best = advice.best.as_ref()?;
+    let option = advice.options.iter().find(|option| option.signal == *best);
+    let parts = [
+        Some(wording::signal(best)),
+        // An external concept can name a signal without its value.
+        option.map(|option| worth(unit, option)),
+        reason(kitchen, advice.reason.as_ref(), advice.words.as_ref()),
+    ];
+    Some(parts.into_iter().flatten().collect::<Vec<_>>().join("; "))
+}
+
+/// "recipe of order 1, by the assistant; saves …; the human takes …".
+pub fn sent(follower: &SessionFollower, shown: &ShownSignalRecord) -> String {
+    let session = &follower.session;
+    let unit = session.spec.assistant.concept.name().unit();
+    let parts = [
+        Some(format!("{}, by the {}", wording::signal(&shown.signal), wording::sender(shown.by))),
+        reason(&session.kitchen, shown.reason.as_ref(), shown.words.as_ref()),
+        shown.worth.as_ref().map(|option| worth(unit, option)),
+    ];
+    parts.into_iter().flatten().collect::<Vec<_>>().join("; ")
+}
+
+/// What became of a signal that is over: whether the participant looked at it, what the estimate says of the belief it is
+/// about, and how it is judged once the trial is over. `nth`: its index among the signals shown.
+pub fn outcome(follower: &SessionFollower, nth: usize) -> String {
+    let Some(shown) = follower.signals.shown.get(nth) else { return String::new() };
+    let session = &follower.session;
+    let after = |time: SessionTime| format!("{:.1} s", session.age(shown.time, time).as_secs_f64());
+    let has_place = shown.signal.location(&session.kitchen).is_some() && session.gaze.samples > 0;
+    let seen = match shown.seen {
+        Some(seen) => Some(format!("looked at after {}", after(seen))),
+        None => has_place.then(|| "not looked at".to_string()),
+    };
+    let verdict = signal_verdicts(follower).and_then(|verdicts| verdicts.get(nth).copied());
+    let judged = verdict.map(|verdict| format!("judged {}", verdict.name()));
+    [seen, belief(follower, shown), judged].into_iter().flatten().collect::<Vec<_>>().join("; ")
+}
+
+/// What became of the beliefs that a signal is about, by the estimate.
+fn belief(follower: &SessionFollower, shown: &ShownSignalRecord) -> Option<String> {
+    let (session, track) = (&follower.session, &follower.false_beliefs);
+    if shown.aspects().is_empty() {
+        return None;
+    }
+    let was_false: Vec<AspectId> =
+        shown.aspects().iter().copied().filter(|&aspect| track.before(aspect, shown.time).is_some()).collect();
+    if was_false.is_empty() {
+        return Some("by the estimate the belief was right already".to_string());
+    }
+    let end = shown.ended.unwrap_or(session.time);
+    let name = |aspect: &AspectId| wording::location(&session.kitchen.aspects[aspect.index()].name);
+    let told = was_false.iter().map(|aspect| match track.corrected(*aspect, shown.time) {
+        Some(right) if right <= end => {
+            let after_s = session.age(shown.time, right).as_secs_f64();
+            format!("by the estimate the belief about {} is right after {after_s:.1} s", name(aspect))
+        }
+        _ => format!("by the estimate the belief about {} stays false", name(aspect)),
+    });
+    Some(told.collect::<Vec<_>>().join("; "))
+}

@@ -51,7 +51,8 @@ impl PageMessage for MessageFromObserver {
         let message: MessageFromObserver = serde_json::from_str(text).ok()?;
         let is_fine = match &message {
             MessageFromObserver::Hello { page, observer, code } => {
-                !page.is_empty() && [Some(page), Some(observer), code.as_ref()].into_iter().flatten().all(is_short)
+                !page.is_empty()
+                    && [Some(page), Some(observer), code.as_ref()].into_iter().flatten().all(|text| is_short(text))
             }
             MessageFromObserver::Ping { t, .. } => t.is_finite() && t.abs() < 1e13,
             MessageFromObserver::Remark { note, .. } => {
@@ -76,7 +77,7 @@ impl PageMessage for MessageFromObserver {
     }
 }
 
-fn is_short(text: &String) -> bool {
+fn is_short(text: &str) -> bool {
     text.len() <= MAX_TEXT && !text.chars().any(char::is_control)
 }
 

@@ -70,7 +70,8 @@ fn a_trial_is_filmed_a_lost_camera_is_told_and_the_film_is_attached() {
     terminal.see("there is no camera /dev/no-camera");
     terminal.key("Escape");
     terminal.begin();
-    terminal.see_words("camera 2 is lost, the session goes on");
+    let lost = "\"what\":\"lost\",\"camera\":2,";
+    terminal.wait("the lost camera in the log", || terminal.count(lost) == 1);
     terminal.see("NO FILM 1 OF 2");
     terminal.wait("a film", || terminal.count("\"what\":\"began\"") == 1);
     let film = terminal.recording().join("film-1.mp4");
@@ -81,7 +82,7 @@ fn a_trial_is_filmed_a_lost_camera_is_told_and_the_film_is_attached() {
     assert!(!runs(&film.display().to_string()), "ffmpeg ends with the session");
     terminal.verifies();
     let log = terminal.log();
-    assert_eq!(terminal.count("\"what\":\"lost\",\"camera\":2,"), 1, "{log}");
+    assert_eq!(terminal.count(lost), 1, "{log}");
     let films: Value =
         serde_json::from_str(&fs::read_to_string(terminal.recording().join("video.json")).expect("attached"))
             .expect("JSON");

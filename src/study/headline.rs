@@ -52,8 +52,8 @@ fn contrast(found: &StudyArmComparison, one: &StudyArmContrast) -> String {
     let is_shown = (high < 1.0 || low > 1.0) && (contrasts == 1 || one.p_holm < 1.0 - LEVEL);
     let verdict = match (is_shown, high < 1.0) {
         (false, _) => "no difference shown".to_string(),
-        (true, true) => format!("fewer with {arm} than with {against}"),
-        (true, false) => format!("more with {arm} than with {against}"),
+        (true, true) => format!("fewer in {arm} trials than in {against} trials"),
+        (true, false) => format!("more in {arm} trials than in {against} trials"),
     };
     format!(
         "Primary outcome, {} per 100 presses of the human: {arm} {:.1}, {against} {:.1}; ratio {:.2}, {:.0} % interval {low:.2} to \

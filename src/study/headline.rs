@@ -49,20 +49,23 @@ fn contrast(found: &StudyArmComparison, one: &StudyArmContrast) -> String {
         1 => String::new(),
         _ => format!(" ({} corrected for {contrasts} contrasts)", p_value(one.p_holm)),
     };
+    let interval = match low.is_finite() && high.is_finite() {
+        true => format!("{:.0} % interval {low:.2} to {high:.2}", 100.0 * LEVEL),
+        false => "too few trials for an interval".to_string(),
+    };
     let is_shown = (high < 1.0 || low > 1.0) && (contrasts == 1 || one.p_holm < 1.0 - LEVEL);
     let verdict = match (is_shown, high < 1.0) {
         (false, _) => "no difference shown".to_string(),
-        (true, true) => format!("fewer with {arm} than with {against}"),
-        (true, false) => format!("more with {arm} than with {against}"),
+        (true, true) => format!("fewer in {arm} trials than in {against} trials"),
+        (true, false) => format!("more in {arm} trials than in {against} trials"),
     };
     format!(
-        "Primary outcome, {} per 100 presses of the human: {arm} {:.1}, {against} {:.1}; ratio {:.2}, {:.0} % interval {low:.2} to \
-         {high:.2}: {verdict}{corrected}.",
+        "Primary outcome, {} per 100 presses of the human: {arm} {:.1}, {against} {:.1}; ratio {:.2}, {interval}: \
+         {verdict}{corrected}.",
         found.outcome.title(),
         rate(one.arm),
         rate(one.against),
         one.ratio,
-        100.0 * LEVEL,
     )
 }
 

@@ -118,7 +118,7 @@ fn summary(figures: &StudySummary) -> Markup {
         (None, None) => card(&text::count(totals.signals, "signal", "signals"), "shown to participants"),
     };
     html! {
-        @for sentence in primary_outcome(figures) { p class="lead" { (sentence) } "\n" }
+        @for sentence in primary_outcome(figures) { p class="lead" { (sentence.replace(" < ", "\u{a0}<\u{a0}")) } "\n" }
         @if figures.arms.is_some() { p class="note" { (RATES_AND_RATIO) } "\n" }
         p class="lead" {
             (text::count(figures.trials, "trial", "trials")) " of "

@@ -72,7 +72,7 @@ fn the_period_does_not_contain_the_assistance_where_groups_are_unequal() {
     assert!(text.contains("13 participants: 10 assisted in the second trial, 3 in the first; left out: B3"), "{text}");
     let page = report::page(&summary, &trials, &RecordingFacts::default(), &[]);
     assert!(page.contains("Left out of the tests of errors per press of the human") && page.contains(words), "{page}");
-    assert!(page.contains("In 13 participants, assistance"), "{page}");
+    assert!(page.contains("secondary: in 13 participants "), "{page}");
 }
 
 /// A crossover of 14 in which the wizard of one trial was shown what the assistants would send.

@@ -15,7 +15,9 @@ fn the_first_sentence_is_the_primary_outcome_and_says_no_more_than_its_interval(
     // The assisted trial of each is the better one by far; or the trials differ by chance.
     let clear = trials(&[[40, 20], [42, 18], [38, 22]], &[[20, 40], [22, 44], [18, 36]]);
     let open = trials(&[[20, 24], [22, 18], [18, 21]], &[[20, 21], [22, 18], [18, 22]]);
-    for (trials, verdict) in [(&clear, "fewer with wizard than with unassisted"), (&open, "no difference shown")] {
+    for (trials, verdict) in
+        [(&clear, "fewer in wizard trials than in unassisted trials"), (&open, "no difference shown")]
+    {
         let figures = summary(trials);
         let [sentence] = &primary_outcome(&figures)[..] else { panic!("one contrast") };
         assert!(sentence.starts_with("Primary outcome, errors per 100 presses of the human: wizard "), "{sentence}");

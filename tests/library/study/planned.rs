@@ -90,7 +90,10 @@ fn each_difference_is_told() {
         |plan| plan.definitions.push(FrozenDefinition { term: "Luck".to_string(), meaning: String::new() }),
         "the definition of \"Luck\" is gone",
     );
-    differs(|plan| plan.plan = "other".to_string(), "20 recordings are of the plan \"arms\"");
+    let other = FrozenPlan { plan: "other".to_string(), ..plan.clone() };
+    let found = differences(&other, &all);
+    assert_eq!((found.len(), found[0].as_str()), (2, "20 recordings are of the plan \"arms\""), "{found:?}");
+    assert!(found[1].starts_with("20 participants are without a recording: P01, "), "{found:?}");
     differs(|plan| plan.plan_digest = "0".to_string(), "20 recordings are of another version of the plan");
     differs(|plan| plan.participants.push("P99".to_string()), "1 participant is without a recording: P99");
     differs(|plan| drop(plan.participants.pop()), "1 participant is not in the frozen plan: P20");

@@ -66,7 +66,7 @@ pub fn export(recording: &Path, formats: &[AnnotationFormat], blind: bool) -> Fi
     let mut replay = RecordingReplay::over(log, cost).without_causes();
     let mut collector = AnnotationCollector::default();
     while let Some(event) = replay.step()? {
-        collector.take(&event.stamped, &replay.follower);
+        collector.take(&event.stamped);
     }
     let kitchen = &replay.session().kitchen;
     let codes = rater_codes::read_all(&folder, &CodableErrors::from_presses(kitchen, &replay.follower.judged))?;

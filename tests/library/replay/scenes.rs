@@ -290,7 +290,7 @@ fn false_beliefs_are_the_same_in_replay_review_and_annotations() {
     let mut replay = RecordingReplay::open(recording).expect("a recording");
     let mut collector = AnnotationCollector::default();
     while let Some(event) = replay.step().expect("events of a session") {
-        collector.take(&event.stamped, &replay.follower);
+        collector.take(&event.stamped);
     }
     let kitchen = replay.session().kitchen.clone();
     let name = |aspect: &str| wording::location(aspect);

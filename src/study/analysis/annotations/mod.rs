@@ -81,7 +81,7 @@ pub struct AnnotationCollector {
 
 impl AnnotationCollector {
     /// Takes an event that was just applied.
-    pub fn take(&mut self, stamped: &TimestampedEvent, follower: &SessionFollower) {
+    pub fn take(&mut self, stamped: &TimestampedEvent) {
         let now = stamped.time;
         self.end = now;
         match &stamped.event {

@@ -215,7 +215,7 @@ impl AdviceScene {
 }
 
 /// The signals that were shown, each with what became of it.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct SignalScene {
     /// Number of signals whose end was told.
     told: usize,
@@ -223,6 +223,13 @@ pub struct SignalScene {
 }
 
 impl SignalScene {
+    /// In a session that goes on, the signals so far are told already.
+    pub fn new(session: &Session) -> SignalScene {
+        let is_signal = |entry: &&TimelineEntry| matches!(entry.what, TimelineEvent::Noted(Event::SignalShown { .. }));
+        let shown = session.timeline.iter().filter(is_signal).count();
+        SignalScene { told: shown - usize::from(session.shown.is_some()), is_over: session.is_trial_over() }
+    }
+
     /// Entity updates after an event that was just applied: a line for a signal that is over, and the page of all.
     pub fn follow(&mut self, session: &Session, follower: &SessionFollower) -> Vec<EntityUpdate> {
         let mut rows = Vec::new();

@@ -84,7 +84,7 @@ impl SessionScene {
             arm: RobotArmScene::new(session),
             belief: BeliefScene::default(),
             advice: AdviceScene::default(),
-            signals: SignalScene::default(),
+            signals: SignalScene::new(session),
             looks: LookScene::default(),
             probes: ProbeScene::default(),
             next,

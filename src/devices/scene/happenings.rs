@@ -170,16 +170,20 @@ pub struct AdviceScene {
     /// The signals that were advised so far: a curve begins where its signal is advised first, so that plot and legend have
     /// only those.
     advised: Vec<Signal>,
-    /// Those whose curves have a value now: a signal that was sent, or can be sent no more, has none.
-    valued: Vec<Signal>,
+    /// Those whose curves have a value now, with it: a signal that was sent, or can be sent no more, has none.
+    valued: Vec<(Signal, f64)>,
 }
 
 impl AdviceScene {
     /// Ends the curves of signals without a value, other than these.
     fn keep(&mut self, has_value: impl Fn(&Signal) -> bool) -> Vec<EntityUpdate> {
-        let (kept, over): (Vec<Signal>, Vec<Signal>) = self.valued.drain(..).partition(has_value);
+        let (kept, over): (Vec<_>, Vec<_>) = self.valued.drain(..).partition(|(signal, _)| has_value(signal));
         self.valued = kept;
-        over.iter().map(|signal| EntityUpdate::new(benefit(signal), EntityData::NoValue)).collect()
+        // The curve is drawn up to its last row with a value.
+        let ends = |(signal, net): &(Signal, f64)| {
+            [EntityData::Value(*net), EntityData::NoValue].map(|shown| EntityUpdate::new(benefit(signal), shown))
+        };
+        over.iter().flat_map(ends).collect()
     }
 
     /// A signal was sent: what it would save is past.
@@ -204,7 +208,7 @@ impl AdviceScene {
         rows.extend(
             drawn.iter().map(|option| EntityUpdate::new(benefit(&option.signal), EntityData::Value(option.net))),
         );
-        self.valued = drawn.into_iter().map(|option| option.signal.clone()).collect();
+        self.valued = drawn.into_iter().map(|option| (option.signal.clone(), option.net)).collect();
         rows.push(EntityUpdate::new(COST_LINE, EntityData::Value(0.0)));
         if !told.is_empty() {
             let text = format!("assistant {told}");
@@ -215,7 +219,7 @@ impl AdviceScene {
 }
 
 /// The signals that were shown, each with what became of it.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct SignalScene {
     /// Number of signals whose end was told.
     told: usize,
@@ -223,6 +227,13 @@ pub struct SignalScene {
 }
 
 impl SignalScene {
+    /// In a session that goes on, the signals so far are told already.
+    pub fn new(session: &Session) -> SignalScene {
+        let is_signal = |entry: &&TimelineEntry| matches!(entry.what, TimelineEvent::Noted(Event::SignalShown { .. }));
+        let shown = session.timeline.iter().filter(is_signal).count();
+        SignalScene { told: shown.saturating_sub(session.shown.iter().count()), is_over: session.is_trial_over() }
+    }
+
     /// Entity updates after an event that was just applied: a line for a signal that is over, and the page of all.
     pub fn follow(&mut self, session: &Session, follower: &SessionFollower) -> Vec<EntityUpdate> {
         let mut rows = Vec::new();

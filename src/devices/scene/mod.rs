@@ -84,7 +84,7 @@ impl SessionScene {
             arm: RobotArmScene::new(session),
             belief: BeliefScene::default(),
             advice: AdviceScene::default(),
-            signals: SignalScene::default(),
+            signals: SignalScene::new(session),
             looks: LookScene::default(),
             probes: ProbeScene::default(),
             next,
@@ -132,7 +132,7 @@ impl SessionScene {
         self.next = stamped.seq + 1;
         let rows = self.changes(stamped, &applied.change, inputs);
         let trial = self.session.trial_clock(stamped.time);
-        (!rows.is_empty()).then(|| SceneUpdate { time: stamped.time, trial, step: stamped.seq, rows })
+        (!rows.is_empty()).then_some(SceneUpdate { time: stamped.time, trial, step: stamped.seq, rows })
     }
 
     fn changes(

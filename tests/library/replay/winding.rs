@@ -121,7 +121,7 @@ fn a_blinded_replay_shows_no_signal_and_the_same_kitchen() {
     let named = open.named(ReplayLandmark::Signal).expect("a signal");
     let number = open.landmarks(ReplayLandmark::Signal).len();
     assert!(named.starts_with(&format!("signal {number} of {number}: ")), "{named}");
-    assert!(named.ends_with(", by the wizard"), "{named}");
+    assert!(named.contains(", by the wizard; ") && named.contains("looked at"), "{named}");
     // Steps do not stop where something is hidden.
     let steps = |film: &mut SeekableReplay| {
         film.wind(0);

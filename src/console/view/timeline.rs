@@ -249,7 +249,7 @@ fn mark(
             Event::SignalEnded { .. } => (3, signs.taken_back.to_string(), TextRole::Signal),
             Event::Probe(ProbeEvent::Begun { .. }) => (5, "?".to_string(), TextRole::Strong),
             Event::Probe(ProbeEvent::Ended { .. }) => (5, signs.to.to_string(), TextRole::Strong),
-            Event::TrialExcluded { .. } => (5, signs.error.to_string(), TextRole::Signal),
+            Event::TrialExcluded { .. } => (5, signs.dash.to_string(), TextRole::Signal),
             Event::TrialIncluded => (5, signs.served.to_string(), TextRole::Signal),
             Event::FocusLost => (5, "!".to_string(), TextRole::Alarm),
             Event::Marker { note } => {
@@ -279,6 +279,7 @@ pub fn draw_position(brush: &mut Painter, regions: &PanelAreas, session: &Sessio
     let clock = session.trial_clock(model.now);
     let part = match session.phase {
         TrialPhase::Ready => BEFORE,
+        TrialPhase::Closed if !session.is_trial_over() => " left early, ",
         TrialPhase::Over(_) | TrialPhase::Closed => " after the trial, ",
         TrialPhase::Running | TrialPhase::Paused => " ",
     };

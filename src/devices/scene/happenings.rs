@@ -8,7 +8,8 @@ use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::communication::{Sender, Signal, signals};
 use tomcom_core::kitchen::{Agent, AspectId, Kitchen};
 use tomcom_core::measures::JudgedPress;
-use tomcom_session::history::{error_reasons, event_words, wording};
+use tomcom_session::history::error_reasons::ExplainedError;
+use tomcom_session::history::{event_words, wording};
 use tomcom_session::protocol::ProtocolEvent;
 use tomcom_session::{Event, Session, TimelineEntry, TimelineEvent, TimestampedEvent};
 
@@ -79,7 +80,7 @@ pub fn entry(session: &Session, entry: &TimelineEntry, error: Option<ShownError<
             let entity = format!("{}/presses", agent.name());
             match error.filter(|_| agent == Agent::Human) {
                 Some(error) => {
-                    let text = format!("ERROR {}, {text}: {}", error.number, error.why(&session.kitchen));
+                    let text = format!("ERROR {}, {text}: {}", error.number, error.why(session));
                     say(&entity, SceneLogLevel::Error, text, entity_content::ERROR)
                 }
                 None if no_effect.is_none() => {
@@ -146,8 +147,9 @@ pub struct ShownError<'a> {
 
 impl ShownError<'_> {
     /// Why the press was an error, with its cost and its cause.
-    pub fn why(&self, kitchen: &Kitchen) -> String {
-        error_reasons::with_cause(kitchen, self.press)
+    pub fn why(&self, session: &Session) -> String {
+        let explained = ExplainedError::among(session, std::slice::from_ref(self.press));
+        explained.into_iter().map(|error| error.with_cause).collect()
     }
 }
 

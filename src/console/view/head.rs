@@ -61,7 +61,7 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
             let step = session.step().filter(|_| model.playback.is_none());
             let code = part(session.spec.participant.code.clone(), strong, 0);
             parts.push(HeadPart { is_close: step.is_some(), ..code });
-            parts.extend(step.map(|(step, _)| part(step.label(), strong, 3)));
+            parts.extend(step.map(|(step, _)| HeadPart { is_close: true, ..part(step.label(), strong, 3) }));
             parts.push(part(condition(session).to_string(), strong, 1));
         }
     }

@@ -48,13 +48,17 @@ impl Place<'_> {
         let is_tall = cells.height > 1;
         let room = right.saturating_sub(after);
         let age = self.session.age(self.session.changed_at[self.id.index()], self.model.now);
-        let age = (format!("{:<columns$}", age.to_string(), columns = usize::from(AGE)), TextRole::Quiet);
+        // Only in the wide line do the items of all orders stand below each other.
+        let age = |is_long: bool| {
+            let columns = if is_long { usize::from(AGE) } else { 0 };
+            (format!("{:<columns$}", format!("{age} ")), TextRole::Quiet)
+        };
         let thoughts = self.thoughts();
         // Of the ways to write the line, the first one that fits.
         let whole = |with_age: bool, is_long: bool, thought: Option<&String>| -> Parts {
-            let age = with_age.then(|| age.clone());
+            let age = with_age.then(|| age(is_long));
             let dot = if brush.theme.unicode { '·' } else { '-' };
-            let thought = thought.map(|thought| (format!("{dot} {thought}"), TextRole::FalseBelief));
+            let thought = thought.map(|thought| (format!("{dot}{thought}"), TextRole::FalseBelief));
             age.into_iter().chain(self.items(brush, needs, is_long)).chain(thought).collect()
         };
         let mut ways: Vec<Parts> = Vec::new();
@@ -74,9 +78,9 @@ impl Place<'_> {
         let parts: Vec<(&str, TextRole)> = ways[fits].iter().map(|(text, role)| (text.as_str(), *role)).collect();
         let end = brush.parts(after, cells.y, room, &parts);
         if self.is_unseen() {
-            let mark = format!("{}{}", brush.theme.signs().changed, self.unseen());
-            if end + width(&mark) < right {
-                brush.parts(end + 1, cells.y, width(&mark), &[(&mark, TextRole::Gaze)]);
+            let marks = [self.unseen(), "?"].map(|words| format!("{}{words}", brush.theme.signs().changed));
+            if let Some(mark) = marks.iter().find(|mark| end + width(mark) < right) {
+                brush.parts(end + 1, cells.y, width(mark), &[(mark, TextRole::Gaze)]);
             }
         }
         let below = right.saturating_sub(after + AGE);

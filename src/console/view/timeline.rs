@@ -116,7 +116,8 @@ fn offers(brush: &mut Painter, row: Rect, session: &Session, model: &ConsoleMode
         }
         // While the key still takes a closed offer, the offer is not missed. The next offer is drawn over the word.
         let is_missed = is_closed && used.is_none() && session.age(end, model.now) > TAKEN_AFTER;
-        let after = to + 2;
+        // Right after the close the word stands over the end of the line.
+        let after = (to + 2).min(i64::from(row.right().saturating_sub(width(MISSED))));
         if is_missed && after >= i64::from(row.x) && after < i64::from(row.right()) {
             brush.text(after as u16, row.y, row.right() - after as u16, MISSED, style);
         }

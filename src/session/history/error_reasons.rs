@@ -89,7 +89,7 @@ impl Reasons<'_> {
             ButtonAction::Trash => needed_by(kitchen, orders, hand, held),
             ButtonAction::Serve(_) => None,
         };
-        told.unwrap_or_else(|| better(kitchen, orders, self.press.verdict.best))
+        told.unwrap_or_else(|| better(kitchen, state, orders, self.press.verdict.best))
     }
 
     /// That the place holds already what the press was to make, and who made it when: "it is cut tuna already, by the robot
@@ -124,16 +124,27 @@ impl Reasons<'_> {
 }
 
 /// The better press, and what it is for: "take tuna would be better: order 2 needs tuna".
-fn better(kitchen: &Kitchen, orders: &[OrderNeeds], best: Option<ButtonId>) -> String {
+fn better(kitchen: &Kitchen, state: State, orders: &[OrderNeeds], best: Option<ButtonId>) -> String {
     let Some(best) = best else { return "waiting for the robot would be better".to_string() };
     let told = format!("{} would be better", wording::button(kitchen, Agent::Human, best));
-    let ButtonAction::Take(item) = kitchen.button(Agent::Human, best).action else { return told };
-    let lacks =
-        |needs: &&OrderNeeds| needs.items.iter().any(|needed| is_missing(needed) && serves(kitchen, item, needed.item));
-    match orders.iter().find(lacks) {
-        Some(needs) => format!("{told}: {} needs {}", label(kitchen, needs.order), storage_name(kitchen, item)),
-        None => told,
-    }
+    let made = match kitchen.button(Agent::Human, best).action {
+        ButtonAction::Take(item) => Some((item, storage_name(kitchen, item))),
+        ButtonAction::Process(process) => {
+            let place = kitchen.processes[usize::from(process)].place;
+            let place = place.unwrap_or(kitchen.hands[Agent::Human.index()]);
+            kitchen.processed(process, state.content(place)).map(|made| (made, word(kitchen, made)))
+        }
+        ButtonAction::Use(_) | ButtonAction::Trash | ButtonAction::Serve(_) => None,
+    };
+    let needs = made.and_then(|(made, name)| {
+        let is_for = |needed: &NeededItem| match needed.progress {
+            ItemProgress::Stacked | ItemProgress::Ready(_) => false,
+            ItemProgress::InWork(_) | ItemProgress::Missing => serves(kitchen, made, needed.item),
+        };
+        let needs = orders.iter().find(|needs| needs.items.iter().any(is_for))?;
+        Some(format!(": {} needs {name}", label(kitchen, needs.order)))
+    });
+    told + &needs.unwrap_or_default()
 }
 
 fn label(kitchen: &Kitchen, location: LocationId) -> String {

@@ -120,7 +120,14 @@ fn in_list(
     (code, chord): (KeyCode, KeyChord),
     touch: KeyPressKind,
 ) -> Option<ConsoleCommand> {
-    if chord.ctrl || (chord.code == KeyCode::Enter && touch != KeyPressKind::Press) {
+    if chord.ctrl {
+        // The key that opened the list may still be held down.
+        if touch == KeyPressKind::Press && model.keys.find(model.layer, chord).is_some() {
+            model.say(NoticeLevel::Refused, format!("a list is open: esc closes it, then press {chord}"));
+        }
+        return None;
+    }
+    if chord.code == KeyCode::Enter && touch != KeyPressKind::Press {
         return None;
     }
     match model.dialog.clone() {

@@ -22,7 +22,8 @@ use tomcom_devices::viewer::{self, ViewerAvailability};
 use tomcom_session::files::file_error::{FileError, FileResult, read_bytes};
 use tomcom_session::files::overwrite;
 use tomcom_session::files::replace_file::Replacement;
-use tomcom_session::history::{error_reasons, signal_words, wording};
+use tomcom_session::history::error_reasons::ExplainedError;
+use tomcom_session::history::{signal_words, wording};
 use tomcom_session::log::video_file::{self, AttachedFilm};
 use tomcom_session::log::{LOG_NAME, LogReader, RecordingLock, RecordingWriteError, rater_codes};
 use tomcom_session::replay::{RecordingReplay, ReplayLandmark};
@@ -417,9 +418,10 @@ pub fn landmarks(recording: &Path, kinds: &[ReplayLandmark]) -> FileResult<Vec<R
             let name = wording::button(kitchen, Agent::Human, press.button);
             let coded = codes.iter().filter_map(|(rater, codes)| Some((rater, codes.0.get(&press.seq)?)));
             let coded: String = coded.map(|(rater, code)| format!("; {rater}: {}", wording::code(code))).collect();
-            let why = error_reasons::with_cause(kitchen, press);
             let next = follower.judged.get(nth + 1).map(|next| next.time);
-            add(press.time, next, format!("error {number}: {name}: {why}{coded}"));
+            for why in ExplainedError::among(session, std::slice::from_ref(press)) {
+                add(press.time, next, format!("error {number}: {name}: {}{coded}", why.with_cause));
+            }
         }
     }
     if kinds.contains(&ReplayLandmark::Signal) {

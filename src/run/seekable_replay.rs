@@ -174,7 +174,7 @@ impl SeekableReplay {
         let before = self.read_events();
         while goes_on() && self.read_event()? {}
         let SessionFollower { judged, session, .. } = &self.replay.follower;
-        self.errors.extend(ExplainedError::among(&session.kitchen, &judged[self.judged..]));
+        self.errors.extend(ExplainedError::among(session, &judged[self.judged..]));
         self.judged = judged.len();
         Ok(self.read_events() > before)
     }

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::follower::SessionFollower;
-use crate::history::{error_reasons, wording};
+use crate::history::error_reasons::ExplainedError;
 use crate::wizard_log::clock_at;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, Kitchen};
@@ -33,16 +33,17 @@ impl ListedError {
     pub fn all(follower: &SessionFollower) -> Vec<ListedError> {
         let (session, kitchen) = (&follower.session, &follower.session.kitchen);
         let errors = follower.judged.iter().filter(|judged| judged.verdict.error);
-        let listed = |(index, judged): (usize, &JudgedPress)| ListedError {
+        let explained = ExplainedError::among(session, &follower.judged);
+        let listed = |(index, (judged, explained)): (usize, (&JudgedPress, ExplainedError))| ListedError {
             error: index as u64 + 1,
             press: judged.seq,
             time_s: clock_at(session, judged.time).as_secs_f64(),
-            button: wording::button(kitchen, Agent::Human, judged.button),
+            button: explained.press,
             effective: kitchen.no_effect(judged.before, Agent::Human, judged.button).is_none(),
-            why: error_reasons::why(kitchen, judged),
+            why: explained.why,
             shown: shown(kitchen, judged),
         };
-        errors.enumerate().map(listed).collect()
+        errors.zip(explained).enumerate().map(listed).collect()
     }
 
     /// As the console shows it: "1:34".

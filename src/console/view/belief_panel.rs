@@ -3,6 +3,7 @@
 
 use ratatui::layout::Rect;
 
+use super::gaze;
 use super::paint::Painter;
 use super::regions::PanelAreas;
 use super::theme::TextRole;
@@ -20,7 +21,7 @@ use tomcom_core::kitchen::AspectId;
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_session::Session;
 use tomcom_session::history::belief_track::{self, BeliefSnapshot, SHOWN_S};
-use tomcom_session::settings::WizardVisibility;
+use tomcom_session::settings::{GazeSource, WizardVisibility};
 
 /// Least width, in columns, of a panel that shows each belief in one line.
 const ONE_LINE: u16 = 66;
@@ -36,7 +37,7 @@ const BAR: u16 = 7;
 const SCALE: u16 = 6;
 
 /// Text of the belief panel while no belief is false.
-pub(super) const QUIET: &str = "No false beliefs";
+pub(super) const QUIET: &str = "No belief is probably false";
 
 /// Text of the belief panel before the trial's first estimate.
 const BEFORE: &str = "no estimate before the trial starts";
@@ -89,8 +90,13 @@ impl Panel<'_> {
     }
 
     fn remark(&self) -> String {
+        let has_gaze = self.session.spec.participant.gaze != GazeSource::None && !self.beliefs.is_empty();
         match self.of_standing(BeliefCorrectness::False).count() {
             _ if self.from > 0 => format!("{} above", self.from),
+            _ if has_gaze && !gaze::is_known(self.session, self.now) => match self.session.gaze.last {
+                Some((at, _)) => format!("without gaze since {}", self.session.trial_clock_at(at)),
+                None => "without gaze so far".to_string(),
+            },
             0 => "estimated, not known".to_string(),
             number if are_by_cost(self.session) => format!("{number} false, costliest first"),
             number => format!("{number} false, oldest first"),
@@ -135,8 +141,8 @@ impl Panel<'_> {
         let quiet = brush.style(TextRole::Quiet);
         if right > 0 && y < area.bottom() {
             let words = match told.is_empty() {
-                true => count(right as u64, "belief is right", "beliefs are right"),
-                false => count(right as u64, "other belief is right", "other beliefs are right"),
+                true => count(right as u64, "belief is probably right", "beliefs are probably right"),
+                false => count(right as u64, "other is probably right", "others are probably right"),
             };
             brush.text(area.x, y, area.width, &words, quiet);
             y += 2;

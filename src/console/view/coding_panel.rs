@@ -44,8 +44,11 @@ fn draw_codebook(brush: &mut Painter, area: Rect, session: &Session, model: &Con
     };
     let (left, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     let lines = match is_panel {
-        true => coding::full(&model.keys, &session.kitchen, columns),
-        false => coding::compact(&model.keys, &session.kitchen, columns),
+        // No code is left out: where there is no room, the definitions are.
+        true if coding::full(&model.keys, &session.kitchen, columns).len() <= usize::from(inside.height) => {
+            coding::full(&model.keys, &session.kitchen, columns)
+        }
+        _ => coding::compact(&model.keys, &session.kitchen, columns),
     };
     for (row, line) in lines.iter().enumerate().take(usize::from(inside.height)) {
         for (before, CodebookEntry { key, words }) in line {

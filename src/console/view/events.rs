@@ -1,7 +1,7 @@
 //! What happened, in words: the last presses with the reasons of errors, and the list of all events.
 
 use super::paint::Painter;
-use super::regions::{PanelAreas, ScreenSize};
+use super::regions::{PanelAreas, ScreenSize, top};
 use super::theme::TextRole;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyLayer;
@@ -59,12 +59,17 @@ fn rows(
     is_listed: impl Fn(&TimelineEvent) -> bool,
 ) {
     let newest = session.timeline.iter().rev().skip(model.events_back).filter(|entry| is_listed(&entry.what));
-    for (entry, y) in newest.zip(inside.rows().map(|row| row.y)) {
-        row(brush, Rect { y, height: 1, ..inside }, session, model, entry);
+    let mut room = inside;
+    for entry in newest {
+        if room.height == 0 {
+            return;
+        }
+        (_, room) = top(room, row(brush, room, session, model, entry));
     }
 }
 
-fn row(brush: &mut Painter, line: Rect, session: &Session, model: &ConsoleModel, entry: &TimelineEntry) {
+/// Draws an entry in the first lines; returns the number of lines, two if the reason of an error needs one of its own.
+fn row(brush: &mut Painter, line: Rect, session: &Session, model: &ConsoleModel, entry: &TimelineEntry) -> u16 {
     let at = (session.trial_clock(model.now) - session.age(entry.time, model.now)).to_string();
     let (who, what) = event_words::happening(&session.kitchen, &entry.what);
     let role = match &entry.what {
@@ -84,18 +89,22 @@ fn row(brush: &mut Painter, line: Rect, session: &Session, model: &ConsoleModel,
     // The reason of an error tells a recipe, which whoever plays the participant at this keyboard has to remember.
     let Some(error) = model.error(entry).filter(|_| model.layer == KeyLayer::Wizard) else {
         brush.parts(x, line.y, columns, &[(&what, TextRole::Text)]);
-        return;
+        return 1;
     };
-    // The reason has priority over what the press took or made.
+    // The reason has priority over what the press took or made, and says why a press had no effect.
     let mark = format!("{} ", brush.theme.signs().error);
-    let whole = match what.contains(&error.why) {
-        true => error.press.clone(),
-        false => what,
-    };
-    let fits = width(&mark) + width(&whole) + 2 + width(&error.why) <= columns;
-    let pressed: &str = if fits { &whole } else { &error.press };
+    let is_told = matches!(entry.what, TimelineEvent::Press { no_effect: Some(_), .. });
+    let whole = if is_told { error.press.clone() } else { what };
+    let fits = |pressed: &str| width(&mark) + width(pressed) + 2 + width(&error.why) <= columns;
+    let pressed: &str = if fits(&whole) { &whole } else { &error.press };
     let gap = if pressed.contains(':') { "; " } else { ": " };
     let parts = [(mark.as_str(), TextRole::Strong), (pressed, TextRole::Text), (gap, TextRole::Quiet)];
     let end = brush.parts(x, line.y, columns, &parts);
-    brush.parts(end, line.y, (x + columns).saturating_sub(end), &[(&error.why, TextRole::Strong)]);
+    if fits(pressed) || line.height < 2 {
+        brush.parts(end, line.y, (x + columns).saturating_sub(end), &[(&error.why, TextRole::Strong)]);
+        return 1;
+    }
+    let x = line.x + CLOCK;
+    brush.parts(x, line.y + 1, line.right().saturating_sub(x + 1), &[(&error.why, TextRole::Strong)]);
+    2
 }

@@ -58,13 +58,14 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     };
     let (mut late, mut first): (Vec<&KeyBinding>, Vec<&KeyBinding>) = model.keys.bindings.iter().partition(is_late);
     late.sort_by_key(|binding| binding.action != KeyAction::Manual(ManualAction::NoteInWords));
-    // The first hint is the robot stop, the second is the key back to all panels while one is at full size, then follow
-    // a rater's keys.
+    // The first hint is the robot stop, then the release of a held robot, then the key back to all panels while one is at
+    // full size, then follow a rater's keys.
     first.sort_by_key(|binding| match binding.action {
         KeyAction::StopRobot => 0,
-        KeyAction::Look(ViewAction::All) => 1,
-        KeyAction::Rate(_) => 2,
-        _ => 3,
+        KeyAction::Manual(ManualAction::HoldRobot) => 1,
+        KeyAction::Look(ViewAction::All) => 2,
+        KeyAction::Rate(_) => 3,
+        _ => 4,
     });
     for binding in first.into_iter().chain(late) {
         let Some(hint) = hint(binding, session, model) else { continue };
@@ -237,6 +238,7 @@ fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -
         },
         KeyAction::Move(ReplayAction::PlayPause) => Some(if plays { "pause" } else { "play" }),
         KeyAction::Manual(ManualAction::NoteInWords) if session.is_running() => Some("mark"),
+        KeyAction::Manual(ManualAction::HoldRobot) if session.robot.held && !is_over => Some("release robot"),
         // Where nothing is to be undone, one step back leaves; live, the key that quits says so.
         KeyAction::Look(ViewAction::All) if !is_away(model) => model.playback.as_ref().map(|_| "leave"),
         KeyAction::Look(ViewAction::Open) if opens_difference(model) => Some("difference"),

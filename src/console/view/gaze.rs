@@ -15,8 +15,9 @@ use crate::console::key_action::KeyLayer;
 use crate::console::kitchen_map::{KitchenMap, KitchenMapAreas};
 use crate::console::text_columns::{fit, width};
 use tomcom_core::base::text::count;
+use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::calibration::{GOOD_DEG, GazeAccuracy, USABLE_DEG};
-use tomcom_core::gaze::nearest_location;
+use tomcom_core::gaze::{MIN_CONFIDENCE, nearest_location};
 use tomcom_core::kitchen::LocationId;
 use tomcom_session::Session;
 use tomcom_session::gaze_samples::faults;
@@ -57,7 +58,8 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
 
 fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) -> u16 {
     let Some((at, sample)) = session.gaze.last else {
-        return brush.parts(x, y, columns, &[("no gaze sample so far", TextRole::Quiet)]);
+        let words = if session.gaze.samples > 0 { "no usable gaze so far" } else { "no gaze sample so far" };
+        return brush.parts(x, y, columns, &[(words, TextRole::Quiet)]);
     };
     let sign = brush.theme.signs().gaze;
     let age_s = session.age(at, model.now).as_secs_f64();
@@ -67,7 +69,7 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
         (Some((location, 0.0)), _) => kitchen.location(location).label(),
         (_, Some(storage)) => format!("storage of {}", storage.label),
         (Some((location, distance_m)), None) => {
-            format!("{:.0} cm from {}", distance_m * 100.0, kitchen.location(location).label())
+            format!("{:.0} cm from {}", (distance_m * 100.0).max(1.0), kitchen.location(location).label())
         }
         (None, None) => "on the display".to_string(),
     };
@@ -86,15 +88,32 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
     )
 }
 
+/// Whether it is known where the participant looked lately.
+pub(super) fn is_known(session: &Session, now: SessionTime) -> bool {
+    session.gaze.last.is_some_and(|(at, _)| session.age(at, now).as_secs_f64() <= GAZE_S)
+}
+
+/// Whether a usable sample came a moment ago.
+pub(super) fn is_usable(session: &Session, now: SessionTime) -> bool {
+    session.gaze.last.is_some_and(|(at, _)| now.secs_since(at) <= USABLE_S)
+}
+
 /// Draws why the gaze is of no use now; nothing while usable samples arrive.
 fn alarm(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
     let gaze = &session.gaze;
-    let is_usable = gaze.last.is_some_and(|(at, _)| model.now.secs_since(at) <= USABLE_S);
     let text = match session.gaze_hz(model.now) {
-        Some(_) if is_usable => return,
+        Some(_) if is_usable(session, model.now) => return,
         Some(_) => {
-            let unusable = 100.0 * gaze.unusable as f64 / gaze.samples.max(1) as f64;
-            format!("unusable now; {unusable:.0} % of all samples are")
+            let why = match gaze.latest_unusable {
+                Some(sample) if sample.confidence < MIN_CONFIDENCE => {
+                    format!("unusable: confidence {:.2} < {MIN_CONFIDENCE}", sample.confidence)
+                }
+                Some(sample) => format!("unusable: beside display ({:.1}, {:.1})", sample.x, sample.y),
+                None => "unusable now".to_string(),
+            };
+            let share = 100.0 * gaze.unusable as f64 / gaze.samples.max(1) as f64;
+            let whole = format!("{why}; {share:.0} % of all samples");
+            if width(&whole) <= columns { whole } else { why }
         }
         None => {
             let pairing = model.gaze_pairing.as_ref().and_then(|pairing| pairing.line(session, model.now));

@@ -5,7 +5,6 @@ use ratatui::style::Style;
 use super::gaze::USABLE_S;
 use super::paint::Painter;
 use super::regions::{PanelAreas, ROOMY_COLUMNS};
-use super::side_panels::SLOW;
 use super::theme::TextRole;
 use crate::console::console_model::{ConsoleModel, FilmStatus, RecordingStatus, RerunStreamStatus};
 use crate::console::probe_keys;
@@ -17,8 +16,8 @@ use tomcom_session::settings::{Condition, GazeSource};
 use tomcom_session::tracker::TrackerConnection;
 use tomcom_session::{Session, TrialPhase};
 
-/// A part of the head line: its text, its style, and how soon it is left out where there is no room; the parts of rank 0
-/// stay.
+/// A part of the head line: its text, its style, and its rank: those of the highest rank are left out first where there is
+/// no room, those of rank 0 stay.
 struct HeadPart {
     text: String,
     style: Style,
@@ -27,8 +26,9 @@ struct HeadPart {
     is_close: bool,
 }
 
-/// Draws the head line of the console: phase, clock, condition, devices. The states of recording, gaze and robot are never
-/// left out: what does not fit loses the facts first, the number of served orders, then the length of the trial.
+/// Draws the head line of the console: phase, condition, trial, clock, devices. The states of recording, gaze and robot
+/// are never left out, and condition and trial come before all that can be. Every part has its place, whatever the states
+/// of gaze and robot: only an alarm that needs more than their columns takes those of the last parts.
 pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.head;
     let is_small = area.width < ROOMY_COLUMNS;
@@ -49,18 +49,21 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
         phase => stage_mark(brush, phase),
     };
     let part = |text: String, style: Style, rank: u8| HeadPart { text, style, rank, is_close: false };
-    // The name of the program is the first to go on a small screen.
-    let name_rank = if is_small { u8::MAX } else { 5 };
-    let mut parts = vec![part("tomcom".to_string(), strong, name_rank), part(format!("{mark}{stage} "), style, 0)];
-    let code = &session.spec.participant.code;
-    match (&model.coding, &model.playback, session.step()) {
+    // All phases of a trial take the same columns.
+    let stage = format!("{:<STAGE$}", format!("{mark}{stage} "));
+    // On a small screen there is no room for the name of the program.
+    let name = (!is_small).then(|| part("tomcom".to_string(), strong, 8));
+    let mut parts: Vec<HeadPart> = name.into_iter().chain([part(stage, style, 0)]).collect();
+    match &model.coding {
         // A rater must not know in which condition the trial was.
-        (Some(coding), ..) => parts.push(part(format!("rater {}", coding.name()), strong, 0)),
-        (None, None, Some((step, _))) => {
-            parts.push(HeadPart { is_close: true, ..part(code.clone(), strong, 0) });
-            parts.push(part(format!("{} {}", step.label(), condition(session)), strong, 4));
+        Some(coding) => parts.push(part(format!("rater {}", coding.name()), strong, 0)),
+        None => {
+            let step = session.step().filter(|_| model.playback.is_none());
+            let code = part(session.spec.participant.code.clone(), strong, 0);
+            parts.push(HeadPart { is_close: step.is_some(), ..code });
+            parts.extend(step.map(|(step, _)| HeadPart { is_close: true, ..part(step.label(), strong, 3) }));
+            parts.push(part(condition(session).to_string(), strong, 1));
         }
-        _ => parts.push(part(code.clone(), strong, 0)),
     }
     if session.study_phase().is_none_or(|phase| phase.phase().has_trial()) {
         let clock = format!("{:>5}", session.trial_clock(model.now).to_string());
@@ -68,31 +71,40 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
         // A replay shows the length of the recording elsewhere.
         if !is_replayed || model.lesson.is_some() {
             let length = SessionTime::from_secs_f64(session.spec.trial.seconds);
-            parts.push(part(format!("/ {length}"), quiet, 6));
+            parts.push(part(format!("/ {length}"), quiet, 5));
         }
         let presses = format!("{:>3}/{}", session.all_presses(), session.spec.trial.presses);
         parts.push(HeadPart { is_close: true, ..part(presses, text, 2) });
-        parts.push(part("presses".to_string(), text, 3));
+        parts.push(part("presses".to_string(), text, 7));
     }
-    let facts = probe_keys::status(session, model).into_iter().chain(facts(session, model));
-    parts.extend(facts.enumerate().map(|(index, fact)| part(fact, quiet, 10 + index as u8)));
+    parts.extend(probe_keys::status(session, model).map(|probe| part(probe, quiet, 4)));
+    parts.push(part(format!("{} served", session.served.len()), quiet, 6));
+    parts.extend(facts(session, model).into_iter().enumerate().map(|(index, fact)| part(fact, quiet, 9 + index as u8)));
     let mut healths = healths(session, model);
-    let needed = |healths: &[(String, TextRole)]| healths.iter().map(|(text, _)| width(text) + gap).sum::<u16>();
-    let columns = |parts: &[HeadPart]| -> u16 { parts.iter().map(|part| width(&part.text) + part.gap(gap)).sum() };
-    let lacks = |parts: &[HeadPart], healths: &[(String, TextRole)]| area.width < 1 + columns(parts) + needed(healths);
-    while lacks(&parts, &healths)
-        && let Some((index, last)) = parts.iter().enumerate().max_by_key(|(_, part)| part.rank)
-        && last.rank > 0
-    {
-        parts.remove(index);
+    for ((text, _), columns) in healths.iter_mut().skip(1).zip(if is_small { SMALL_STATES } else { STATES }) {
+        *text = format!("{text:<columns$}");
     }
-    // Of the states, those that are no alarm and stand behind the first three are left out next.
-    while lacks(&parts, &healths)
+    let needed = |healths: &[(String, TextRole)]| healths.iter().map(|(text, _)| width(text) + gap).sum::<u16>();
+    // Of the states, those that are no alarm and stand behind the first three are left out before condition and trial.
+    let least: u16 = parts.iter().filter(|part| part.rank <= TRIAL).map(|part| part.columns(gap)).sum();
+    while area.width < 1 + least + needed(&healths)
         && healths.len() > ALWAYS
         && let Some(fine) = healths.iter().rposition(|(_, role)| matches!(role, TextRole::Text | TextRole::Quiet))
         && fine >= ALWAYS
     {
         healths.remove(fine);
+    }
+    let mut room = area.width.saturating_sub(1 + needed(&healths));
+    let mut ranks: Vec<u8> = parts.iter().map(|part| part.rank).collect();
+    ranks.sort_unstable();
+    ranks.dedup();
+    // A part that does not fit leaves its columns to those that are less important.
+    for rank in ranks {
+        let columns: u16 = parts.iter().filter(|part| part.rank == rank).map(|part| part.columns(gap)).sum();
+        match rank == 0 || columns <= room {
+            true => room = room.saturating_sub(columns),
+            false => parts.retain(|part| part.rank != rank),
+        }
     }
     let mut x = area.x + 1;
     for part in &parts {
@@ -106,6 +118,10 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
 }
 
 impl HeadPart {
+    fn columns(&self, gap: u16) -> u16 {
+        width(&self.text) + self.gap(gap)
+    }
+
     /// Columns after the part.
     fn gap(&self, gap: u16) -> u16 {
         if self.is_close { 1 } else { gap }
@@ -114,6 +130,13 @@ impl HeadPart {
 
 /// Number of states at the right end that are never left out: recording or replay, gaze, robot.
 const ALWAYS: usize = 3;
+/// Highest rank of the parts that say which trial this is, and how far it is.
+const TRIAL: u8 = 3;
+/// Columns of the trial's phase, and of the states of gaze and robot: "gaze 120 Hz" and "robot slow" on small screens,
+/// "GAZE UNUSABLE" and "PROTECTIVE STOP" on others.
+const STAGE: usize = 10;
+const SMALL_STATES: [usize; 2] = [11, 10];
+const STATES: [usize; 2] = [13, 15];
 
 /// Whether the console replays a recording that is no longer being made.
 fn is_replayed(model: &ConsoleModel) -> bool {
@@ -130,30 +153,20 @@ fn stage_mark(brush: &Painter, phase: TrialPhase) -> (String, Style) {
     }
 }
 
-/// Sender of signals in this condition: "unassisted", "assistant", "wizard"; in a plan its arm, "wizard with advice".
+/// Sender of signals in this condition, as lists of recordings name it: "unassisted", "ToM-Com", "wizard"; in a plan its arm, "wizard with advice".
 pub(super) fn condition(session: &Session) -> &'static str {
     match session.spec.trial.condition {
         _ if session.step().is_some() => session.study_arm().title(),
         Condition::None => "unassisted",
-        Condition::Assistant => "assistant",
+        Condition::Assistant => session.study_arm().title(),
         Condition::Wizard => "wizard",
     }
 }
 
 /// Facts of the head line that do not change during a trial, the most important first.
 fn facts(session: &Session, model: &ConsoleModel) -> Vec<String> {
-    let served = format!("{} served", session.served.len());
-    let condition = condition(session).to_string();
-    let mut facts = match &model.playback {
-        None if session.step().is_some() => vec![served],
-        None => vec![served, condition],
-        // A rater must not know in which condition the trial was.
-        Some(playback) if model.coding.is_some() => vec![served, playback.name.clone()],
-        Some(playback) => vec![served, condition, playback.name.clone()],
-    };
-    facts.push(session.kitchen.title.clone());
-    facts.extend(streamed(model));
-    facts
+    let name = model.playback.as_ref().map(|playback| playback.name.clone());
+    name.into_iter().chain([session.kitchen.title.clone()]).chain(streamed(model)).collect()
 }
 
 /// States in words, with their styles: recording, gaze and robot, then those that only some sessions have.
@@ -199,12 +212,13 @@ pub(super) fn healths(session: &Session, model: &ConsoleModel) -> Vec<(String, T
 /// State of the robot in words.
 fn robot(session: &Session) -> (String, TextRole) {
     let mode = session.robot.safety_mode();
-    let slow = format!("robot {SLOW}");
+    let is_over = matches!(session.phase, TrialPhase::Over(_) | TrialPhase::Closed);
     let (words, role) = match (session.robot.stopped, session.robot.held) {
         (true, _) => (mode.name(), TextRole::Alarm),
         (false, true) => ("ROBOT HELD", TextRole::Strong),
         (false, false) if mode == SafetyMode::Safeguard => (mode.name(), TextRole::Strong),
-        (false, false) if mode == SafetyMode::Reduced => (slow.as_str(), TextRole::Strong),
+        // After the trial the arm stands.
+        (false, false) if mode == SafetyMode::Reduced && !is_over => ("robot slow", TextRole::Strong),
         (false, false) => ("robot ok", TextRole::Text),
     };
     (words.to_string(), role)

@@ -13,7 +13,7 @@ use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyLayer;
 use crate::console::kitchen_map::{KitchenMap, KitchenMapBox, KitchenMapElement};
-use crate::console::text_columns::{fit, squeeze, width, wrap, wrap_to};
+use crate::console::text_columns::{fit, squeeze, width, wrap};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, LocationKind, OrderContent};
 use tomcom_session::Session;
@@ -49,7 +49,7 @@ pub fn draw(
     }
     // Whoever plays the participant at this keyboard has to remember the recipes.
     let needs = match model.layer {
-        KeyLayer::Wizard => order_needs(&session.kitchen, session.state),
+        KeyLayer::Wizard => order_needs(&session.kitchen, &session.timeline, session.state),
         KeyLayer::Participant => Vec::new(),
     };
     let offered = offers::shown(session, model).and_then(|offer| offer.place(session));
@@ -261,6 +261,11 @@ impl<'a> Place<'a> {
         self.model.layer == KeyLayer::Wizard && self.session.is_unseen(self.id)
     }
 
+    /// What is told of an unseen change: while no usable gaze comes, nobody knows whether the participant saw it.
+    pub(super) fn unseen(&self) -> &'static str {
+        if gaze::is_known(self.session, self.model.now) { "unseen" } else { "gaze unknown" }
+    }
+
     /// The key of this location in the active layer (wizard's or participant's keys).
     fn key(&self) -> Option<(KeyChord, TextRole)> {
         match self.model.layer {
@@ -326,7 +331,10 @@ impl<'a> Place<'a> {
         let style = brush.style(TextRole::FalseBelief);
         let words = thinks_of(thinks);
         if lines < room.height {
-            let rows = wrap_to(&words, room.width, room.height - lines, brush.theme.signs().ellipsis);
+            let rows = wrap(&words, room.width);
+            // Half a value would be read as another one.
+            let fits = rows.len() <= usize::from(room.height - lines);
+            let rows = if fits { rows } else { vec![FALSE_BELIEF.to_string()] };
             for (row, text) in rows.iter().enumerate() {
                 brush.text(room.x, room.y + lines + row as u16, room.width, text, style);
             }
@@ -360,7 +368,7 @@ impl<'a> Place<'a> {
             news.push((words.unwrap_or(format!("{unseen}{age_s:.0}s")), agent_role(by)));
         } else if !unseen.is_empty() {
             let age = self.session.age(self.session.changed_at[self.id.index()], self.model.now);
-            news.push((format!("{unseen}unseen {age}"), TextRole::Gaze));
+            news.push((format!("{unseen}{} {age}", self.unseen()), TextRole::Gaze));
         }
         let has_news = !news.is_empty();
         let y = room.y + lines.min(room.height - 1);
@@ -368,7 +376,7 @@ impl<'a> Place<'a> {
         // Without a free line, the free end of the last line is used.
         let ends = match lines < room.height {
             true => 0,
-            false => (0..room.width).filter(|x| brush.is_written(room.x + x, y)).max().map_or(0, |x| x + 1),
+            false => (0..room.width).filter(|x| brush.is_written(room.x + x, y)).max().map_or(0, |x| x + 2),
         };
         if ends + needed > room.width {
             news.retain(|(_, role)| *role != TextRole::Robot || ends + needed <= room.width);

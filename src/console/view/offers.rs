@@ -17,6 +17,7 @@ use crate::console::mouse::ClickAction;
 use crate::console::panels::Panel;
 use crate::console::text_columns::{width, wrap};
 use tomcom_core::base::text::{count, printable};
+use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::{BenefitUnit, ConceptName};
 use tomcom_core::communication::offer::{OfferedCommunication, TAKEN_AFTER};
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption, SignalReason};
@@ -24,14 +25,17 @@ use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::kitchen::LocationId;
 use tomcom_session::admit::may_send;
 use tomcom_session::external::MindRole;
-use tomcom_session::history::wording;
+use tomcom_session::history::{belief_track, wording};
 use tomcom_session::settings::{Condition, WizardVisibility};
 use tomcom_session::{Session, TrialPhase, offers};
 
 /// The offer as it is drawn: the open offer or, in recordings that have no offers, the best signal.
 pub(super) struct ShownOffer<'a> {
     act: OfferedCommunication,
-    benefit: Option<f64>,
+    /// Benefit and net benefit.
+    worth: Option<(f64, f64)>,
+    /// When it opened: what it says was so then.
+    opened: Option<SessionTime>,
     reason: Option<&'a SignalReason>,
     /// The reason in an external concept's own words.
     words: Option<&'a str>,
@@ -47,17 +51,19 @@ pub(super) fn shown<'a>(session: &'a Session, model: &ConsoleModel) -> Option<Sh
     }
     if offers::are_made(session) {
         let offer = session.offers.open()?;
-        let benefit = offer.advice.worth.map(|worth| worth.benefit);
+        let worth = offer.advice.worth.map(|worth| (worth.benefit, worth.net));
         let (act, reason) = (offer.advice.what.clone(), offer.advice.reason.as_ref());
-        return Some(ShownOffer { act, benefit, reason, words: offer.advice.words.as_deref() });
+        let (opened, words) = (Some(offer.opened), offer.advice.words.as_deref());
+        return Some(ShownOffer { act, worth, opened, reason, words });
     }
     let advice = session.advice.as_ref()?;
-    let (act, benefit) = match (&advice.best, &advice.proposal) {
-        (Some(signal), _) => (OfferedCommunication::Signal(signal.clone()), advice.top().map(|option| option.benefit)),
+    let top = advice.top().map(|option| (option.benefit, option.net));
+    let (act, worth) = match (&advice.best, &advice.proposal) {
+        (Some(signal), _) => (OfferedCommunication::Signal(signal.clone()), top),
         (None, Some(proposal)) => (OfferedCommunication::Presses(proposal.presses.clone()), None),
         (None, None) => return None,
     };
-    Some(ShownOffer { act, benefit, reason: advice.reason.as_ref(), words: advice.words.as_deref() })
+    Some(ShownOffer { act, worth, opened: None, reason: advice.reason.as_ref(), words: advice.words.as_deref() })
 }
 
 impl ShownOffer<'_> {
@@ -86,14 +92,14 @@ impl ShownOffer<'_> {
         format!(" {enter}{}{own} ", words.to_uppercase())
     }
 
-    /// What the offered signal saves: "saves ≈ 4 presses".
+    /// What the offered signal saves, and what of it is left after its cost: "saves ≈ 4.2 presses, net +2.7".
     fn saves(&self, brush: &Painter, session: &Session) -> String {
-        let Some(benefit) = self.benefit else { return String::new() };
+        let Some((benefit, net)) = self.worth else { return String::new() };
         match session.spec.assistant.concept.name().unit() {
             BenefitUnit::Deviation => format!("belief deviation {benefit:.2}"),
             BenefitUnit::Presses | BenefitUnit::None => {
                 let about = if brush.theme.unicode { "≈" } else { "about" };
-                format!("saves {about} {}", count(benefit.round().max(1.0) as u64, "press", "presses"))
+                format!("saves {about} {benefit:.1} presses, net {net:+.1}")
             }
         }
     }
@@ -105,37 +111,52 @@ impl ShownOffer<'_> {
         Some(format!("replaces {}", wording::signal(&shown.signal)))
     }
 
-    /// Reasons for the offer, most important first: what the participant believes and what is true, how certain that is
-    /// and for how long, and the wrong press or the press that is left out.
-    fn because(&self, session: &Session, model: &ConsoleModel, believed: &[EstimatedBelief]) -> Vec<String> {
-        let Some(reason) = self.reason.map(|reason| wording::reason(&session.kitchen, reason)) else {
+    /// Reasons for the offer, most important first: what the participant believed and what was true when the offer opened,
+    /// how certain that was and for how long, the wrong press or the press that is left out, and when it was so. The
+    /// belief panel has what is believed now.
+    fn because(&self, session: &Session, model: &ConsoleModel) -> Vec<String> {
+        let Some(reason) = self.reason else {
             let words = self.words.map(|words| printable(words).into_owned());
             return words.into_iter().chain(self.replaces(session)).collect();
         };
-        let aspect = session.kitchen.aspect_named(&reason.aspect);
-        let belief = believed.iter().find(|belief| Some(belief.aspect) == aspect && belief.thinks != belief.truth);
-        // Each belief has one value and one certainty on the screen, those of the belief panel.
-        let ((believes, truth), p) = match belief {
-            Some(belief) => {
-                (beliefs::contrast(&session.kitchen, belief.aspect, belief.thinks, belief.truth), f64::from(belief.p))
+        let kitchen = &session.kitchen;
+        let aspect = kitchen.aspect_named(&reason.aspect);
+        let values = aspect.and_then(|aspect| {
+            let value = |label: &String| kitchen.aspects[aspect.index()].labels.iter().position(|known| known == label);
+            Some((aspect, value(&reason.believes)?, value(&reason.truth)?))
+        });
+        let (believes, truth) = match values {
+            Some((aspect, believes, truth)) => beliefs::contrast(kitchen, aspect, believes, truth),
+            None => {
+                let worded = wording::reason(kitchen, reason);
+                (worded.believes, format!("is {}", worded.truth))
             }
-            None => ((reason.believes, format!("is {}", reason.truth)), reason.p_believes),
         };
-        let since = belief.and_then(|belief| belief.since);
-        let age = since.map_or(String::new(), |since| format!(" for {}", session.age(since, model.now)));
-        let thinks = if p >= 0.5 { "thinks" } else { "may think" };
+        let since = self.opened.zip(aspect).and_then(|(opened, aspect)| {
+            let since = belief_track::wrong_since(model.belief.until(opened), aspect.index())?;
+            Some(session.trial_clock_at(opened) - session.trial_clock_at(since))
+        });
+        let thinks = if reason.p_believes >= 0.5 { "thinks" } else { "may think" };
         let mut said = vec![format!("{thinks} {believes}, {truth}")];
         said.extend(self.replaces(session));
-        said.push(format!("{}{age}", percent(p)));
+        let p = percent(reason.p_believes);
+        said.push(match since {
+            _ if reason.p_believes < UNLIKELY => format!("{p}: unlikely, but costly"),
+            Some(since) => format!("{p} for {since}"),
+            None => p,
+        });
         said.extend(match (&reason.prevents, &reason.instead) {
             (Some(button), _) => Some(format!("next error: {}", wording::location(button))),
             (None, Some(button)) => Some(format!("waits instead of: {}", wording::location(button))),
             (None, None) => None,
         });
+        said.extend(self.opened.map(|opened| format!("as of {}", session.trial_clock_at(opened))));
         said
     }
 }
 
+/// Probability of a wrong value below which an offer is worth its cost only since the belief would be costly.
+const UNLIKELY: f64 = 0.25;
 /// Words of the line of the offer while no signal is worth its cost.
 const NOTHING_TO_SAY: &str = "nothing worth saying";
 
@@ -175,7 +196,7 @@ pub fn draw_offer(
         1 => (end + 1, area.y, right.saturating_sub(width(&saves) + 2)),
         _ => (area.x + 1, area.y + 1, right),
     };
-    for (index, words) in offer.because(session, model, believed).iter().enumerate() {
+    for (index, words) in offer.because(session, model).iter().enumerate() {
         let words = if index == 0 { words.clone() } else { format!(" · {words}") };
         let words = if brush.theme.unicode { words } else { words.replace('·', "-") };
         let role = if index == 0 { TextRole::FalseBelief } else { TextRole::Text };
@@ -209,7 +230,10 @@ fn why_no_offer(session: &Session, model: &ConsoleModel, believed: &[EstimatedBe
         let reason = session.shown.as_ref().and_then(|shown| shown.reason.as_ref());
         let may_see = beliefs::visibility(session, model) == WizardVisibility::Recommendation;
         return match reason.filter(|_| may_see).map(|reason| wording::reason(&session.kitchen, reason)) {
-            Some(reason) => format!("The assistant's signal: thought {}, is {}", reason.believes, reason.truth),
+            Some(reason) => {
+                let shown = session.shown.as_ref().map(|shown| wording::signal(&shown.signal)).unwrap_or_default();
+                format!("The assistant's {shown}: thought {}, is {}", reason.believes, reason.truth)
+            }
             None => "The assistant sends the signals, without the wizard".to_string(),
         };
     }
@@ -219,6 +243,9 @@ fn why_no_offer(session: &Session, model: &ConsoleModel, believed: &[EstimatedBe
     match session.phase {
         TrialPhase::Running | TrialPhase::Paused => {}
         TrialPhase::Ready => return "The assistant advises while the trial runs".to_string(),
+        TrialPhase::Closed if !session.is_trial_over() => {
+            return "The session was left before its trial was over".to_string();
+        }
         TrialPhase::Over(_) | TrialPhase::Closed => return "The trial is over".to_string(),
     }
     match believed.iter().filter(|belief| belief.standing == BeliefCorrectness::False).count() as u64 {

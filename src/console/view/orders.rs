@@ -18,8 +18,9 @@ const AGE: u16 = 6;
 type Parts = Vec<(String, TextRole)>;
 
 impl Place<'_> {
-    /// Draws an order: its key and name, its dish and age, and the items that it needs; in a second line, or else at the
-    /// end of the first, a false belief about it.
+    /// Draws an order: its key and name, its dish and age, and the items that it needs, with the sign of what is in work
+    /// before the dish that a stack was begun for; in a second line, or else at the end of the first, a false belief about
+    /// it.
     pub(super) fn draw_order(&self, brush: &mut Painter, spot: &KitchenMapBox, needs: Option<&OrderNeeds>) {
         let cells = spot.cells;
         if cells.width < 6 || cells.height == 0 {
@@ -35,6 +36,9 @@ impl Place<'_> {
         };
         let (style, right) = (self.content_style(brush), cells.right());
         let end = brush.text(x, cells.y, right.saturating_sub(x), &dish, style);
+        if needs.is_some_and(|needs| needs.is_begun) {
+            brush.parts(x - 1, cells.y, 1, &[(brush.theme.signs().in_work, TextRole::Strong)]);
+        }
         if !matches!(self.session.state.order(self.id), OrderContent::Dish(_)) {
             return;
         }
@@ -44,12 +48,17 @@ impl Place<'_> {
         let is_tall = cells.height > 1;
         let room = right.saturating_sub(after);
         let age = self.session.age(self.session.changed_at[self.id.index()], self.model.now);
-        let age = (format!("{:<columns$}", age.to_string(), columns = usize::from(AGE)), TextRole::Quiet);
+        // Only in the wide line do the items of all orders stand below each other.
+        let age = |is_long: bool| {
+            let columns = if is_long { usize::from(AGE) } else { 0 };
+            (format!("{:<columns$}", format!("{age} ")), TextRole::Quiet)
+        };
         let thoughts = self.thoughts();
         // Of the ways to write the line, the first one that fits.
         let whole = |with_age: bool, is_long: bool, thought: Option<&String>| -> Parts {
-            let age = with_age.then(|| age.clone());
-            let thought = thought.map(|thought| (thought.clone(), TextRole::FalseBelief));
+            let age = with_age.then(|| age(is_long));
+            let dot = if brush.theme.unicode { '·' } else { '-' };
+            let thought = thought.map(|thought| (format!("{dot}{thought}"), TextRole::FalseBelief));
             age.into_iter().chain(self.items(brush, needs, is_long)).chain(thought).collect()
         };
         let mut ways: Vec<Parts> = Vec::new();
@@ -69,14 +78,14 @@ impl Place<'_> {
         let parts: Vec<(&str, TextRole)> = ways[fits].iter().map(|(text, role)| (text.as_str(), *role)).collect();
         let end = brush.parts(after, cells.y, room, &parts);
         if self.is_unseen() {
-            let mark = format!("{}unseen", brush.theme.signs().changed);
-            if end + width(&mark) < right {
-                brush.parts(end + 1, cells.y, width(&mark), &[(&mark, TextRole::Gaze)]);
+            let marks = [self.unseen(), "?"].map(|words| format!("{}{words}", brush.theme.signs().changed));
+            if let Some(mark) = marks.iter().find(|mark| end + width(mark) < right) {
+                brush.parts(end + 1, cells.y, width(mark), &[(mark, TextRole::Gaze)]);
             }
         }
-        if let Some(thought) = thoughts.first().filter(|_| is_tall) {
-            let x = after + AGE;
-            brush.parts(x, cells.y + 1, right.saturating_sub(x), &[(thought, TextRole::FalseBelief)]);
+        let below = right.saturating_sub(after + AGE);
+        if let Some(thought) = thoughts.iter().find(|thought| width(thought) <= below).filter(|_| is_tall) {
+            brush.parts(after + AGE, cells.y + 1, below, &[(thought, TextRole::FalseBelief)]);
         }
     }
 

@@ -69,6 +69,8 @@ const FRAME: u16 = 2;
 /// Height of the timeline without frame, in rows; on small terminals without room for all rows.
 const TIMELINE_ROWS: u16 = 6;
 const LOW_TIMELINE_ROWS: u16 = 4;
+/// Least height of a medium terminal's panels, in rows, for a row of offers in the timeline.
+const OFFERS_FROM: u16 = 34;
 /// Height of the list of signals on large terminals, in rows.
 const RECOMMENDATION_ROWS: u16 = 8;
 /// Heights of the panels of display, gaze and robot, in rows.
@@ -288,7 +290,10 @@ impl PanelAreas {
     /// Arrangement for medium terminals: orders, kitchen and last presses at the left; beliefs, display, gaze and robot
     /// at the right.
     fn medium(self, visibility: WizardVisibility, lines: LineRows) -> PanelAreas {
-        let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(TIMELINE_ROWS + FRAME));
+        // A row of offers comes after all lines of the kitchen.
+        let has_offers = visibility == WizardVisibility::Recommendation && self.kitchen.height >= OFFERS_FROM;
+        let rows = self.timeline_rows(TIMELINE_ROWS + FRAME + u16::from(has_offers));
+        let (rest, timeline) = bottom(self.kitchen, rows);
         let (column, side) = left(rest, (rest.width * 13 / 20).max(KITCHEN_COLUMNS));
         let (side, robot) = bottom(side, ROBOT_ROWS);
         let (side, gaze) = bottom(side, GAZE_ROWS);

@@ -8,16 +8,19 @@ use crate::console::console_model::{ConsoleModel, NoticeLevel, TrainingFeedback,
 use crate::console::key_action::{KeyAction, ManualAction};
 use crate::console::text_columns::{width, wrap};
 use tomcom_core::base::text::count;
+use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::kitchen::Agent;
-use tomcom_core::robot::ArmSample;
 use tomcom_core::robot::{SLOWS_M, SafetyMode};
 use tomcom_session::history::wording;
 use tomcom_session::settings::ArmKind;
 use tomcom_session::{Session, ShownSignal, TrialPhase, proposals};
 
 /// What the console says while the arm is slow since a hand is near.
-pub(super) const SLOW: &str = "slow: hand near";
+const SLOW: &str = "slow: hand near";
+
+/// Age from which a sample of the arm is not shown as the present, in seconds.
+const FRESH_S: f64 = 1.0;
 
 pub fn draw_robot(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.robot;
@@ -56,9 +59,7 @@ pub fn draw_robot(brush: &mut Painter, regions: &PanelAreas, session: &Session, 
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     robot_line(brush, x, inside.y, columns, session, model);
     holds(brush, x, inside.y + 1, columns, session);
-    if let Some((_, sample)) = session.robot.arm.last {
-        arm(brush, x, inside.y + 2, columns, session, &sample);
-    }
+    arm(brush, x, inside.y + 2, columns, session, model.now);
 }
 
 fn holds(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session) {
@@ -69,10 +70,18 @@ fn holds(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session) {
     brush.text_right(x + columns, y, columns / 2, &presses, quiet);
 }
 
-fn arm(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, sample: &ArmSample) {
+/// Draws what the arm does, how far the hand is from it, and the force. While the arm stands no samples come: the last one
+/// then tells nothing of the present.
+fn arm(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, now: SessionTime) {
+    let Some((at, sample)) = session.robot.arm.last else { return };
     let is_over = matches!(session.phase, TrialPhase::Over(_) | TrialPhase::Closed);
-    let phase = if session.robot.stopped || is_over { "stopped" } else { wording::arm_phase(sample.phase) };
-    let phase = format!("{phase:<10} ");
+    if session.robot.stopped || is_over || session.age(at, now).as_secs_f64() > FRESH_S {
+        let words = if session.robot.stopped || is_over { "stopped" } else { "stands" };
+        brush.parts(x, y, columns, &[(words, TextRole::Text)]);
+        return;
+    }
+    let waits = session.robot.arm.mode == SafetyMode::Safeguard;
+    let phase = format!("{:<10} ", if waits { "waits" } else { wording::arm_phase(sample.phase) });
     let hand = match sample.hand_away_m {
         away_m if away_m < 0.005 => " hand at arm".to_string(),
         away_m => format!(" hand {away_m:>4.2} m"),
@@ -150,11 +159,21 @@ fn robot_line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Sessi
         brush.parts(x, y, columns, if fits { &parts } else { &[("hand in the way", TextRole::Text)] });
         return;
     }
+    // How long the arm takes is known neither while it is held nor once the expected time is over.
+    let left = match left_s {
+        _ if session.robot.held => String::new(),
+        left_s if left_s > 0.0 => format!(" {left_s:>3.1} s"),
+        _ => " soon".to_string(),
+    };
+    if left.is_empty() {
+        brush.parts(x, y, columns, &[(&label, TextRole::Robot), (by, TextRole::Signal)]);
+        return;
+    }
     // The name of the button has priority over the length of the bar.
     let bar = 8.min(columns / 4).min(columns.saturating_sub(width(&label) + width(by) + 7));
     brush.parts(x, y, columns.saturating_sub(bar + 7), &[(&label, TextRole::Robot), (by, TextRole::Signal)]);
     let at = brush.bar(x + columns - bar - 6, y, bar, 1.0 - left_s / whole_s, TextRole::Robot);
-    brush.parts(at, y, 6, &[(&format!(" {left_s:>3.1} s"), TextRole::Text)]);
+    brush.parts(at, y, 6, &[(&left, TextRole::Text)]);
 }
 
 fn release(model: &ConsoleModel) -> String {

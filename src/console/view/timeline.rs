@@ -116,7 +116,8 @@ fn offers(brush: &mut Painter, row: Rect, session: &Session, model: &ConsoleMode
         }
         // While the key still takes a closed offer, the offer is not missed. The next offer is drawn over the word.
         let is_missed = is_closed && used.is_none() && session.age(end, model.now) > TAKEN_AFTER;
-        let after = to + 2;
+        // Right after the close the word stands over the end of the line.
+        let after = (to + 2).min(i64::from(row.right().saturating_sub(width(MISSED))));
         if is_missed && after >= i64::from(row.x) && after < i64::from(row.right()) {
             brush.text(after as u16, row.y, row.right() - after as u16, MISSED, style);
         }
@@ -249,7 +250,7 @@ fn mark(
             Event::SignalEnded { .. } => (3, signs.taken_back.to_string(), TextRole::Signal),
             Event::Probe(ProbeEvent::Begun { .. }) => (5, "?".to_string(), TextRole::Strong),
             Event::Probe(ProbeEvent::Ended { .. }) => (5, signs.to.to_string(), TextRole::Strong),
-            Event::TrialExcluded { .. } => (5, signs.error.to_string(), TextRole::Signal),
+            Event::TrialExcluded { .. } => (5, signs.dash.to_string(), TextRole::Signal),
             Event::TrialIncluded => (5, signs.served.to_string(), TextRole::Signal),
             Event::FocusLost => (5, "!".to_string(), TextRole::Alarm),
             Event::Marker { note, .. } => {
@@ -279,6 +280,7 @@ pub fn draw_position(brush: &mut Painter, regions: &PanelAreas, session: &Sessio
     let clock = session.trial_clock(model.now);
     let part = match session.phase {
         TrialPhase::Ready => BEFORE,
+        TrialPhase::Closed if !session.is_trial_over() => " left early, ",
         TrialPhase::Over(_) | TrialPhase::Closed => " after the trial, ",
         TrialPhase::Running | TrialPhase::Paused => " ",
     };

@@ -159,7 +159,7 @@ impl BeliefScene {
             return was_error
                 .then(|| EntityUpdate::new(ERRORS, EntityData::State(String::new(), entity_content::ERROR)));
         };
-        let why = error.why(&session.kitchen);
+        let why = error.why(session);
         self.press = format!("## Error {} at {at}: {pressed}\n\n**Why an error**: {why}.\n{own}", error.number);
         let words = format!("{}: {pressed}: {why}", error.number);
         Some(EntityUpdate::new(ERRORS, EntityData::State(words, entity_content::ERROR)))

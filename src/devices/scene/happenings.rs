@@ -5,10 +5,11 @@ use super::{EntityUpdate, moment_on_clock};
 use tomcom_core::communication::offer::{OfferCloseReason, OfferedAdvice};
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::communication::{Sender, Signal, signals};
-use tomcom_core::kitchen::{Agent, AspectId, Kitchen};
+use tomcom_core::kitchen::{Agent, AspectId};
 use tomcom_core::measures::JudgedPress;
 use tomcom_session::follower::SessionFollower;
-use tomcom_session::history::{error_reasons, event_words, signal_words, wording};
+use tomcom_session::history::error_reasons::ExplainedError;
+use tomcom_session::history::{event_words, signal_words, wording};
 use tomcom_session::protocol::ProtocolEvent;
 use tomcom_session::wizard_log::ShownSignalRecord;
 use tomcom_session::{Event, Session, TimelineEntry, TimelineEvent, TimestampedEvent};
@@ -102,7 +103,7 @@ pub fn entry(
                     say(&entity, SceneLogLevel::Warning, text, entity_content::HUMAN)
                 }
                 Some(error) if error.press.verdict.error => {
-                    let text = format!("ERROR {}, {text}: {}", error.number, error.why(&session.kitchen));
+                    let text = format!("ERROR {}, {text}: {}", error.number, error.why(session));
                     say(&entity, SceneLogLevel::Error, text, entity_content::ERROR)
                 }
                 _ if no_effect.is_none() => {
@@ -148,8 +149,9 @@ pub struct JudgedPressShown<'a> {
 
 impl JudgedPressShown<'_> {
     /// Why the press was an error, with its cost and its cause.
-    pub fn why(&self, kitchen: &Kitchen) -> String {
-        error_reasons::with_cause(kitchen, self.press)
+    pub fn why(&self, session: &Session) -> String {
+        let explained = ExplainedError::among(session, std::slice::from_ref(self.press));
+        explained.into_iter().map(|error| error.with_cause).collect()
     }
 }
 

@@ -67,8 +67,7 @@ impl Live {
             }
         }
         let judged = self.engine.judged();
-        let kitchen = &self.engine.session().kitchen;
-        self.model.errors.extend(ExplainedError::among(kitchen, &judged[self.judged..]));
+        self.model.errors.extend(ExplainedError::among(self.engine.session(), &judged[self.judged..]));
         self.model.unproven += judged[self.judged..].iter().filter(|press| !press.verdict.is_proven).count() as u64;
         self.judged = judged.len();
         if let Some(viewing) = &mut self.viewing {

@@ -1,12 +1,12 @@
 //! Why a press of the human was an error, in words. The reason follows from the true state and recipes, the press and
 //! the human's best press: it is the same live, in replays, and for raters, and tells nothing about beliefs.
 
-use super::order_needs::{ItemProgress, NeededItem, OrderNeeds, becomes, order_needs};
+use super::order_needs::{ItemProgress, NeededItem, OrderNeeds, OrderWork, becomes};
 use super::{event_words, wording};
-use tomcom_core::base::text::count;
+use crate::{Session, TimelineEntry, TimelineEvent};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::rules::NoEffectReason;
-use tomcom_core::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, State};
+use tomcom_core::kitchen::{Agent, ButtonAction, ButtonId, ContentId, Kitchen, LocationId, State};
 use tomcom_core::measures::JudgedPress;
 
 /// An error of the human with its reason.
@@ -23,56 +23,128 @@ pub struct ExplainedError {
 }
 
 impl ExplainedError {
-    /// The errors among judged presses. Their reasons need no cost to go beyond that of the judgements.
-    pub fn among<'a>(
-        kitchen: &'a Kitchen,
-        judged: &'a [JudgedPress],
-    ) -> impl Iterator<Item = ExplainedError> + use<'a> {
-        judged.iter().filter(|press| press.verdict.error).map(move |press| ExplainedError {
-            time: press.time,
-            press: wording::button(kitchen, Agent::Human, press.button),
-            why: why(kitchen, press),
-            with_cause: with_cause(kitchen, press),
-        })
+    /// The errors among judged presses of a session, whose timeline goes to the last of them at least. Their reasons need
+    /// no cost to go beyond that of the judgements.
+    pub fn among(session: &Session, judged: &[JudgedPress]) -> Vec<ExplainedError> {
+        let (mut work, mut followed) = (OrderWork::default(), 0);
+        let errors = judged.iter().filter(|press| press.verdict.error);
+        let explained = errors.map(|press| {
+            let until = session.timeline.partition_point(|entry| entry.time < press.time);
+            work.follow(&session.kitchen, &session.timeline[followed..until]);
+            followed = until;
+            let orders = work.needs(&session.kitchen, press.before);
+            let why = Reasons { session, press, orders, earlier: &session.timeline[..until] }.why();
+            ExplainedError {
+                time: press.time,
+                press: wording::button(&session.kitchen, Agent::Human, press.button),
+                with_cause: format!("{why}; {}", event_words::cost(&session.kitchen, press)),
+                why,
+            }
+        });
+        explained.collect()
     }
 }
 
-/// Why this press was an error, what it costs, and its cause where that is known: "order 1 has nori already; costs 2
-/// presses; cause: false belief about robot hand". Not for raters, who find the causes.
-pub fn with_cause(kitchen: &Kitchen, press: &JudgedPress) -> String {
-    let (why, cost) = (why(kitchen, press), event_words::error(kitchen, press));
-    let cost = cost.strip_prefix("error, ").unwrap_or(&cost);
-    // Where there is no other reason, the cost is the reason.
-    if cost.starts_with(&why) { cost.to_string() } else { format!("{why}; {cost}") }
+/// What the reason of an error follows from.
+struct Reasons<'a> {
+    session: &'a Session,
+    press: &'a JudgedPress,
+    /// What the orders needed before the press.
+    orders: Vec<OrderNeeds>,
+    /// What happened before it.
+    earlier: &'a [TimelineEntry],
 }
 
-/// Why this press was an error: why it had no effect; else what the orders need instead; else the better press.
-pub fn why(kitchen: &Kitchen, press: &JudgedPress) -> String {
-    let (state, action) = (press.before, kitchen.button(Agent::Human, press.button).action);
-    let orders = order_needs(kitchen, state);
-    match kitchen.no_effect(state, Agent::Human, press.button) {
-        Some((NoEffectReason::NotServed, order)) => return not_served(kitchen, state, &orders, order),
-        Some((why, about)) => return wording::because(kitchen, why, about, kitchen.content_label(state, about)),
-        None => {}
+impl Reasons<'_> {
+    /// Why the press was an error: why it had no effect; else what the orders need instead; else the better press.
+    fn why(&self) -> String {
+        let (kitchen, state, orders) = (&*self.session.kitchen, self.press.before, self.orders.as_slice());
+        let action = kitchen.button(Agent::Human, self.press.button).action;
+        match kitchen.no_effect(state, Agent::Human, self.press.button) {
+            Some((NoEffectReason::NotServed, order)) => return not_served(kitchen, state, orders, order),
+            Some((NoEffectReason::NotProcessed, place)) if let Some(told) = self.processed_already(action, place) => {
+                return told;
+            }
+            Some((why, about)) => return wording::because(kitchen, why, about, kitchen.content_label(state, about)),
+            None => {}
+        }
+        let hand = kitchen.hands[Agent::Human.index()];
+        let held = state.content(hand);
+        let told = match action {
+            ButtonAction::Take(item) => not_needed(kitchen, orders, item, None),
+            ButtonAction::Process(process) => {
+                let place = kitchen.processes[usize::from(process)].place.unwrap_or(hand);
+                kitchen
+                    .processed(process, state.content(place))
+                    .and_then(|made| made_for_nothing(kitchen, orders, made))
+            }
+            ButtonAction::Use(place) if held.is_empty() => {
+                not_needed(kitchen, orders, state.content(place), Some(place))
+            }
+            ButtonAction::Use(place) => (place == kitchen.board)
+                .then(|| stacked(kitchen, state, orders, place, held))
+                .flatten()
+                .or_else(|| (place == kitchen.plate).then(|| incomplete(kitchen, orders, held)).flatten())
+                .or_else(|| not_needed(kitchen, orders, held, Some(hand))),
+            ButtonAction::Trash => needed_by(kitchen, orders, hand, held),
+            ButtonAction::Serve(_) => None,
+        };
+        told.unwrap_or_else(|| better(kitchen, state, orders, self.press.verdict.best))
     }
-    let hand = kitchen.hands[Agent::Human.index()];
-    let held = state.content(hand);
-    let told = match action {
-        ButtonAction::Take(item) => taken(kitchen, &orders, item),
+
+    /// That the place holds already what the press was to make, and who made it when: "it is cut tuna already, by the robot
+    /// 2 s ago".
+    fn processed_already(&self, action: ButtonAction, place: LocationId) -> Option<String> {
+        let ButtonAction::Process(process) = action else { return None };
+        let kitchen = &self.session.kitchen;
+        let made = self.press.before.content(place);
+        if !kitchen.processes[usize::from(process)].steps.iter().any(|&(_, to)| to == made) {
+            return None;
+        }
+        let came = self.earlier.iter().rev().find_map(|entry| match entry.what {
+            TimelineEvent::Press { agent, button, before, after, .. }
+                if after.content(place) == made && before.content(place) != made =>
+            {
+                Some((entry.time, agent, kitchen.button(agent, button).action))
+            }
+            _ => None,
+        });
+        let by = match came {
+            Some((time, agent, ButtonAction::Process(_))) => {
+                let clock = |at: SessionTime| self.session.trial_clock_at(at);
+                let ago = clock(self.press.time) - clock(time);
+                let ago =
+                    if ago.as_secs_f64() < 60.0 { format!("{:.0} s", ago.as_secs_f64()) } else { ago.to_string() };
+                format!(", by the {} {ago} ago", agent.name())
+            }
+            _ => String::new(),
+        };
+        Some(format!("it is {} already{by}", word(kitchen, made)))
+    }
+}
+
+/// The better press, and what it is for: "take tuna would be better: order 2 needs tuna".
+fn better(kitchen: &Kitchen, state: State, orders: &[OrderNeeds], best: Option<ButtonId>) -> String {
+    let Some(best) = best else { return "waiting for the robot would be better".to_string() };
+    let told = format!("{} would be better", wording::button(kitchen, Agent::Human, best));
+    let made = match kitchen.button(Agent::Human, best).action {
+        ButtonAction::Take(item) => Some((item, storage_name(kitchen, item))),
         ButtonAction::Process(process) => {
-            let place = kitchen.processes[usize::from(process)].place.unwrap_or(hand);
-            kitchen.processed(process, state.content(place)).and_then(|made| made_for_nothing(kitchen, &orders, made))
+            let place = kitchen.processes[usize::from(process)].place;
+            let place = place.unwrap_or(kitchen.hands[Agent::Human.index()]);
+            kitchen.processed(process, state.content(place)).map(|made| (made, word(kitchen, made)))
         }
-        ButtonAction::Use(place) if place == kitchen.board && !held.is_empty() => {
-            stacked(kitchen, state, &orders, place, held)
-        }
-        ButtonAction::Trash => needed_by(kitchen, &orders, hand, held),
-        ButtonAction::Use(_) | ButtonAction::Serve(_) => None,
+        ButtonAction::Use(_) | ButtonAction::Trash | ButtonAction::Serve(_) => None,
     };
-    told.unwrap_or_else(|| match press.verdict.best {
-        Some(best) => format!("{} would be better", wording::button(kitchen, Agent::Human, best)),
-        None => format!("costs {}", count(press.verdict.excess.unsigned_abs(), "press", "presses")),
-    })
+    let needs = made.and_then(|(made, name)| {
+        let is_for = |needed: &NeededItem| match needed.progress {
+            ItemProgress::Stacked | ItemProgress::Ready(_) => false,
+            ItemProgress::InWork(_) | ItemProgress::Missing => serves(kitchen, made, needed.item),
+        };
+        let needs = orders.iter().find(|needs| needs.items.iter().any(is_for))?;
+        Some(format!(": {} needs {name}", label(kitchen, needs.order)))
+    });
+    told + &needs.unwrap_or_default()
 }
 
 fn label(kitchen: &Kitchen, location: LocationId) -> String {
@@ -98,20 +170,36 @@ fn serves(kitchen: &Kitchen, content: ContentId, item: ContentId) -> bool {
     content == item || becomes(kitchen, content, item)
 }
 
-/// Why an ingredient is not to be taken from the storage: it is there already, an order needs another one in its place, or
-/// no order uses it.
-fn taken(kitchen: &Kitchen, orders: &[OrderNeeds], item: ContentId) -> Option<String> {
-    let name = |item: ContentId| {
-        let storage = kitchen.storages.iter().find(|storage| serves(kitchen, storage.item, item));
-        storage.map_or_else(|| word(kitchen, item).to_string(), |storage| storage.label.clone())
-    };
+fn is_missing(needed: &NeededItem) -> bool {
+    needed.progress == ItemProgress::Missing
+}
+
+/// The label of the storage that has what becomes the item, else the item's words.
+fn storage_name(kitchen: &Kitchen, item: ContentId) -> &str {
+    let storage = kitchen.storages.iter().find(|storage| serves(kitchen, storage.item, item));
+    storage.map_or_else(|| word(kitchen, item), |storage| storage.label.as_str())
+}
+
+/// Why a content is not to be taken or put anywhere: it is there already, an order needs another one in its place, or no
+/// order uses it. `at`: where it was, if it does not come from a storage.
+fn not_needed(kitchen: &Kitchen, orders: &[OrderNeeds], content: ContentId, at: Option<LocationId>) -> Option<String> {
+    let name = |item: ContentId| if at.is_none() { storage_name(kitchen, item) } else { word(kitchen, item) };
+    if kitchen.content(content).is_stack() {
+        let items = &kitchen.content(content).items;
+        let is_for_one = orders.iter().any(|needs| items.iter().all(|&item| has(needs, item)));
+        return (!is_for_one).then(|| format!("no order needs {}", word(kitchen, content)));
+    }
     let all = || orders.iter().flat_map(|needs| needs.items.iter().map(move |needed| (needs.order, needed)));
-    let is_missing = |needed: &NeededItem| needed.progress == ItemProgress::Missing;
-    if all().any(|(_, needed)| is_missing(needed) && serves(kitchen, item, needed.item)) {
+    let counts = |needed: &NeededItem| match needed.progress {
+        ItemProgress::Ready(place) | ItemProgress::InWork(place) => Some(place) == at,
+        ItemProgress::Stacked => needed.item == content && [Some(kitchen.board), Some(kitchen.plate)].contains(&at),
+        ItemProgress::Missing => serves(kitchen, content, needed.item),
+    };
+    if all().any(|(_, needed)| counts(needed)) {
         return None;
     }
-    if let Some((order, needed)) = all().find(|(_, needed)| serves(kitchen, item, needed.item)) {
-        let (order, name) = (label(kitchen, order), name(item));
+    if let Some((order, needed)) = all().find(|(_, needed)| serves(kitchen, content, needed.item)) {
+        let (order, name) = (label(kitchen, order), name(content));
         return Some(match needed.progress {
             ItemProgress::Ready(at) | ItemProgress::InWork(at) => {
                 format!("{name} for {order} is there: {}", label(kitchen, at))
@@ -122,15 +210,24 @@ fn taken(kitchen: &Kitchen, orders: &[OrderNeeds], item: ContentId) -> Option<St
     // Items that cannot be stacked on each other stand in each other's place.
     let forms: Vec<ContentId> = (0..kitchen.contents.len())
         .map(|index| ContentId(index as u8))
-        .filter(|&to| serves(kitchen, item, to))
+        .filter(|&to| serves(kitchen, content, to))
         .collect();
     let is_instead = |needed: &NeededItem| forms.iter().all(|&form| kitchen.stacked(needed.item, form).is_none());
     // With several orders nobody knows which of them the press was for.
     let instead = all().find(|(_, needed)| is_missing(needed) && is_instead(needed)).filter(|_| orders.len() == 1);
     Some(match instead {
-        Some((order, needed)) => format!("{} needs {}", label(kitchen, order), name(needed.item)),
-        None => format!("no order needs {}", name(item)),
+        Some((order, needed)) if at.is_none() => format!("{} needs {}", label(kitchen, order), name(needed.item)),
+        _ => format!("no order needs {}", name(content)),
     })
+}
+
+/// That a stack on the plate is not the whole dish yet.
+fn incomplete(kitchen: &Kitchen, orders: &[OrderNeeds], held: ContentId) -> Option<String> {
+    let items = &kitchen.content(held).items;
+    let needs = orders.iter().find(|needs| items.len() > 1 && items.iter().all(|&item| has(needs, item)))?;
+    let lacks = needs.items.iter().map(|needed| needed.item).filter(|item| !items.contains(item));
+    let lacks = list(kitchen, lacks);
+    (!lacks.is_empty()).then(|| format!("{} still needs {lacks}", label(kitchen, needs.order)))
 }
 
 /// Why an item is not to be made: no order has a use for it.
@@ -180,18 +277,25 @@ fn instead(kitchen: &Kitchen, needs: &OrderNeeds, wrong: &[ContentId]) -> String
     format!("{order} needs {}, not {wrong}", list(kitchen, right.into_iter()))
 }
 
-/// What the plate's content lacks, or has too much, for the order.
+/// Whose dish the plate holds, or what its content lacks, or has too much, for the order.
 fn not_served(kitchen: &Kitchen, state: State, orders: &[OrderNeeds], order: LocationId) -> String {
     let on_plate = &kitchen.content(state.content(kitchen.plate)).items;
+    let is_whole =
+        |needs: &&OrderNeeds| needs.items.len() == on_plate.len() && on_plate.iter().all(|&item| has(needs, item));
+    if let Some(other) = orders.iter().find(is_whole) {
+        return format!("the plate holds {}'s dish", label(kitchen, other.order));
+    }
+    let name = label(kitchen, order);
     let Some(needs) = orders.iter().find(|needs| needs.order == order) else {
-        return format!("{} asks for no dish", label(kitchen, order));
+        return format!("{name} asks for no dish");
     };
     let missing = needs.items.iter().map(|needed| needed.item).filter(|item| !on_plate.contains(item));
     let missing = list(kitchen, missing);
-    let extra: Vec<ContentId> = on_plate.iter().copied().filter(|&item| !has(needs, item)).collect();
-    match extra.is_empty() {
-        true => format!("{} needs {missing}", label(kitchen, order)),
-        false => format!("{} needs {missing}, not {}", label(kitchen, order), list(kitchen, extra.into_iter())),
+    let extra = list(kitchen, on_plate.iter().copied().filter(|&item| !has(needs, item)));
+    match (missing.is_empty(), extra.is_empty()) {
+        (_, true) => format!("{name} needs {missing}"),
+        (true, false) => format!("{name} needs no {extra}"),
+        (false, false) => format!("{name} needs {missing}, not {extra}"),
     }
 }
 

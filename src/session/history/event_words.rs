@@ -153,7 +153,7 @@ fn verdict(stamped: &TimestampedEvent, follower: &SessionFollower) -> String {
     match (&stamped.event, judged) {
         (Event::Press { agent: Agent::Human, .. }, None) => " (does not count)".to_string(),
         (_, Some(press)) if press.verdict.error => {
-            format!(" ({})", error(&follower.session.kitchen, press))
+            format!(" (error, {})", cost(&follower.session.kitchen, press))
         }
         (_, Some(press)) if press.verdict.race => " (race with the robot)".to_string(),
         _ => String::new(),
@@ -317,8 +317,9 @@ pub fn arm_stopped(mode: SafetyMode, force_n: Option<f64>, joint: Option<u8>) ->
     }
 }
 
-/// The cost of the press compared with the human's best press, and the cause where it is known.
-pub(super) fn error(kitchen: &Kitchen, press: &JudgedPress) -> String {
+/// The cost of the press compared with the human's best press, and the cause where it is known: "costs 2 presses; cause:
+/// false belief about robot hand".
+pub(super) fn cost(kitchen: &Kitchen, press: &JudgedPress) -> String {
     let because = match press.cause {
         None => String::new(),
         Some(ErrorCause::Slip) => "; cause: slip".to_string(),
@@ -330,7 +331,7 @@ pub(super) fn error(kitchen: &Kitchen, press: &JudgedPress) -> String {
             format!("; cause: false belief about {} and {}", target.label(kitchen), other.label(kitchen))
         }
     };
-    format!("error, costs {}{because}", count(press.verdict.excess.unsigned_abs(), "press", "presses"))
+    format!("costs {}{because}", count(press.verdict.excess.unsigned_abs(), "press", "presses"))
 }
 
 pub fn protocol(event: &ProtocolEvent) -> String {

@@ -28,13 +28,12 @@ pub fn idle(reason: IdleReason, waits_for: &[impl AsRef<str>], gave_up: Option<A
         IdleReason::NoOrder => "waits for an order".to_string(),
         IdleReason::HumanTurn if buttons.is_empty() => "waits until the human presses".to_string(),
         IdleReason::HumanTurn => {
-            let buttons = buttons.join(" or ");
-            let told = format!("waits until the human presses {buttons}");
-            let short = format!("human's turn: {buttons}");
-            match [&told, &short].iter().find(|told| told.chars().count() <= most) {
-                Some(told) => told.to_string(),
-                None => format!("waits: {buttons}"),
-            }
+            let (first, more) = (&buttons[0], buttons.len() - 1);
+            let all = buttons.join(" or ");
+            let told = [format!("waits until the human presses {all}"), format!("human's turn: {all}")];
+            // Whose presses they are is never left out: they would be read as the robot's plan.
+            let least = if more > 0 { format!("human: {first} +{more}") } else { format!("human: {first}") };
+            told.into_iter().find(|told| told.chars().count() <= most).unwrap_or(least)
         }
         IdleReason::Skipped => match gave_up {
             Some(AbortReason::Skipped) => "waits: the wizard skipped its press".to_string(),
@@ -141,6 +140,7 @@ pub fn dish(kitchen: &Kitchen, dish: &Dish) -> String {
 pub fn stage(session: &Session) -> String {
     match session.study_phase().map(PhaseSpec::phase) {
         Some(around) if !around.has_trial() && session.phase != TrialPhase::Closed => around.name().to_uppercase(),
+        _ if session.phase == TrialPhase::Closed && session.ended_early => "ENDED EARLY".to_string(),
         _ => phase(session.phase).to_string(),
     }
 }

@@ -217,7 +217,7 @@ fn the_participant_at_the_keyboard_sees_no_estimate() {
         stage.model.size = size;
         let screen = stage.screen(size);
         assert!(screen.contains("KEYS: PARTICIPANT"), "{screen}");
-        for words in ["thinks", "Beliefs", "beliefs", "Signals by benefit", "No false beliefs"] {
+        for words in ["thinks", "Beliefs", "beliefs", "Signals by benefit", "probably false"] {
             assert!(!screen.contains(words), "{words} is shown at {size:?}:\n{screen}");
         }
         let seen = seen(&stage);

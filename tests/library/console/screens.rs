@@ -185,7 +185,7 @@ fn what_a_wizard_has_to_recognise_is_told_at_each_size() {
         stopped.shows(size, &["EMERGENCY STOP", "^r resume"]);
         highlight.shows(size, &["highlight cutting board", "█[c]"]);
         let over = "session over, the recording ends here: no space left on the device";
-        alarm.shows(size, &["CLOSED", "RECORDING LOST", "EMERGENCY STOP", over]);
+        alarm.shows(size, &["ENDED EARLY", "RECORDING LOST", "EMERGENCY STOP", over]);
         assert!(ascii.screen(size).is_ascii(), "{}", ascii.screen(size));
     }
     check_snapshot("console", "alarm_80x24", alarm.screen((80, 24)));
@@ -393,7 +393,7 @@ fn the_head_never_loses_recording_gaze_and_robot() {
     let safety = |mode| Event::RobotSafety { mode, force_n: None, joint: None };
     let robot = [
         (safety(SafetyMode::Normal), "robot ok"),
-        (safety(SafetyMode::Reduced), "robot slow: hand near"),
+        (safety(SafetyMode::Reduced), "robot slow"),
         (safety(SafetyMode::Safeguard), "SAFEGUARD STOP"),
         (safety(SafetyMode::ProtectiveStop), "PROTECTIVE STOP"),
     ];
@@ -410,12 +410,44 @@ fn the_head_never_loses_recording_gaze_and_robot() {
         stage.at(24.0, event);
         check(&stage, words);
         stage.session.phase = TrialPhase::Over(TrialEndReason::Wizard);
+        // An arm that rests is slow no more.
+        let words = if words == "robot slow" { "robot ok" } else { words };
         for columns in [80, 120] {
             let screen = stage.screen((columns, 40));
             assert!(screen.lines().next().is_some_and(|head| head.contains(words)), "{screen}");
         }
         stage.session.phase = TrialPhase::Running;
     }
+}
+
+/// Condition, clock and presses have one place each, whatever gaze and robot do and however long the trial is under way.
+#[test]
+fn the_head_keeps_condition_and_trial_in_their_places() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.session.spec.trial.condition = Condition::None;
+    stage.session.spec.robot.arm = ArmKind::Physics;
+    stage.wait(1.0);
+    let head = |stage: &Stage, columns| stage.screen((columns, 40)).lines().next().unwrap_or_default().to_string();
+    let begins = |stage: &Stage, columns| {
+        let head = head(stage, columns);
+        ["P01", "unassisted", "/304", "● rec"]
+            .map(|words| head.find(words).unwrap_or_else(|| panic!("{words}: {head}")))
+    };
+    let first = [80, 120, 160].map(|columns| begins(&stage, columns));
+    for step in 0..120 {
+        stage.look(24.0 + f64::from(step) / 120.0, 0.4, 0.4);
+    }
+    stage.at(25.1, Event::RobotSafety { mode: SafetyMode::Reduced, force_n: None, joint: None });
+    assert_eq!([80, 120, 160].map(|columns| begins(&stage, columns)), first, "{}", head(&stage, 80));
+    stage.at(400.0, Event::TrialPaused);
+    stage.model.now = at(500.0);
+    assert_eq!([80, 120, 160].map(|columns| begins(&stage, columns)[1]), first.map(|places| places[1]));
+    stage.session.excluded = Some("phone".to_string());
+    assert!(
+        head(&stage, 120).contains("unassisted") && head(&stage, 120).contains("EXCLUDED"),
+        "{}",
+        head(&stage, 120)
+    );
 }
 
 #[test]

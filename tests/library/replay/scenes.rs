@@ -3,7 +3,8 @@
 use tomcom::run::seekable_replay::SeekableReplay;
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_devices::scene::{EntityData, EntityUpdate, SceneInputs, SceneUpdate, SessionScene};
-use tomcom_session::history::{error_reasons, wording};
+use tomcom_session::history::error_reasons::ExplainedError;
+use tomcom_session::history::wording;
 use tomcom_session::replay::ReplayLandmark;
 use tomcom_session::settings::Condition;
 use tomcom_session::wizard_log::signal_verdicts;
@@ -119,7 +120,7 @@ fn a_page_says_what_the_error_was_why_and_what_was_believed_before_it() {
         assert_eq!(moment.step, *seq, "{heading}");
         // The reason as replays have it, with what it costs.
         let judged = replay.follower.judged.iter().find(|press| press.seq == *seq).expect("a judged press");
-        let why = error_reasons::why(&replay.session().kitchen, judged);
+        let why = ExplainedError::among(replay.session(), std::slice::from_ref(judged)).remove(0).why;
         let sentence = page.split_once("**Why an error**: ").expect("a reason").1.lines().next().expect("a line");
         assert!(sentence.starts_with(&why) && sentence.contains("costs "), "{why}: {sentence}");
         let (_, then) = pages.iter().rfind(|(_, page)| page.starts_with(&heading)).expect("a page of the error");

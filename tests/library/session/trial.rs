@@ -6,8 +6,9 @@ use tomcom_core::measures::errors::{PressJudge, PressVerdict};
 use tomcom_session::apply;
 use tomcom_session::engine::InputResult;
 use tomcom_session::follower::SessionFollower;
-use tomcom_session::history::error_reasons;
+use tomcom_session::history::error_reasons::ExplainedError;
 use tomcom_session::history::order_needs::{ItemProgress, order_needs};
+use tomcom_session::{TimelineEntry, TimelineEvent};
 use tomcom_study::analysis::trial_summary::{RegretSum, order_times};
 
 use super::probes::on_request;
@@ -183,8 +184,8 @@ fn presses_faster_than_the_sessions_pace_are_recorded_and_do_not_count() {
 }
 
 /// The verdict on the human's last press of a list by both agents, one second apart but for the last one, that comes
-/// `after_s` after the one before it; orders of these dishes are present.
-fn judged(dishes: &[&str], presses: &[(Agent, &str)], after_s: f64) -> JudgedPress {
+/// `after_s` after the one before it; orders of these dishes are present. With the session in which it was made.
+fn judged(dishes: &[&str], presses: &[(Agent, &str)], after_s: f64) -> (JudgedPress, Session) {
     let kitchen = kitchen();
     let mut cost = CostToGo::new(kitchen.clone());
     let mut judge = PressJudge::new(kitchen.clone());
@@ -193,6 +194,7 @@ fn judged(dishes: &[&str], presses: &[(Agent, &str)], after_s: f64) -> JudgedPre
         let dish = kitchen.dishes.iter().position(|known| known.name == *dish).expect("a dish of the menu");
         state.set_order(*order, OrderContent::Dish(tomcom_core::kitchen::DishId(dish as u8)));
     }
+    let mut session = Session::new(kitchen.clone(), default_settings(), 0);
     let mut last = None;
     for (index, (agent, name)) in presses.iter().enumerate() {
         let button = kitchen.button_named(*agent, name).expect("a button");
@@ -206,22 +208,29 @@ fn judged(dishes: &[&str], presses: &[(Agent, &str)], after_s: f64) -> JudgedPre
                 last = Some(JudgedPress { seq, time, button, before, verdict, belief_known: false, cause: None });
             }
         }
-        state = press.after;
+        let (before, after) = (press.before, press.after);
+        let no_effect = kitchen.no_effect(before, *agent, button);
+        let what = TimelineEvent::Press { agent: *agent, button, before, after, no_effect };
+        session.timeline.push(TimelineEntry { time, what });
+        state = after;
     }
-    last.expect("a press of the human")
+    (last.expect("a press of the human"), session)
 }
 
 fn verdict(dishes: &[&str], presses: &[(Agent, &str)], after_s: f64) -> PressVerdict {
-    judged(dishes, presses, after_s).verdict
+    judged(dishes, presses, after_s).0.verdict
 }
 
 #[test]
 fn an_error_is_explained_by_what_the_orders_need() {
     use Agent::{Human, Robot};
     let check = |dishes: &[&str], presses: &[(Agent, &str)], why: &str| {
-        let press = judged(dishes, presses, 5.0);
+        let (press, session) = judged(dishes, presses, 5.0);
         assert!(press.verdict.error, "{presses:?} is no error: {:?}", press.verdict);
-        assert_eq!(error_reasons::why(&kitchen(), &press), why, "{presses:?}");
+        let explained = ExplainedError::among(&session, &[press]);
+        assert_eq!(explained[0].why, why, "{presses:?}");
+        let cost = format!("{why}; costs {} press", press.verdict.excess);
+        assert!(explained[0].with_cause.starts_with(&cost), "{}", explained[0].with_cause);
     };
     check(&["crab maki"], &[(Human, "take shrimp")], "order 1 needs crab");
     // With two orders nobody knows for which of them it was.
@@ -236,6 +245,22 @@ fn an_error_is_explained_by_what_the_orders_need() {
     check(&["tuna nigiri"], &stacked, "order 1 needs shaped rice, not cooked rice");
     let trash = [rice.as_slice(), &[(Human, "trash")]].concat();
     check(&["crab maki"], &trash, "order 1 needs cooked rice");
+    // What no order needs is not to be carried about either.
+    let carried = [(Human, "take shrimp"), (Human, "counter"), (Human, "counter")];
+    check(&["crab maki"], &carried, "no order needs raw shrimp");
+    // Who did it already, and when; and nothing is said of what cannot be known.
+    let cut = [(Human, "take tuna"), (Human, "cutting_board"), (Robot, "cut"), (Human, "cut")];
+    check(&["tuna nigiri"], &cut, "it is cut tuna already, by the robot 5 s ago");
+    let raw = [(Human, "take shrimp"), (Human, "cutting_board"), (Human, "cut")];
+    check(&["shrimp nigiri"], &raw, "raw shrimp cannot be processed there");
+    let dish = [
+        rice.as_slice(),
+        &[(Human, "shape"), (Human, "assembly_board"), (Human, "take nori"), (Human, "assembly_board")],
+        &[(Human, "take tuna"), (Human, "cutting_board"), (Human, "cut"), (Human, "cutting_board")],
+        &[(Human, "assembly_board"), (Human, "assembly_board"), (Human, "plate"), (Human, "serve 1")],
+    ]
+    .concat();
+    check(&["crab maki", "tuna nigiri"], &dish, "the plate holds order 2's dish");
 }
 
 #[test]
@@ -250,13 +275,64 @@ fn what_is_there_counts_for_one_order_and_as_far_as_it_is() {
             [kitchen.location_named(place).map(|at| at.0), kitchen.content_named(content).map(|id| id.0)];
         state.set_code(LocationId(place.expect("a place")), content.expect("a content"));
     }
-    let found = order_needs(&kitchen, state);
+    let found = order_needs(&kitchen, &[], state);
     let progress = |index: usize| found[index].items.iter().map(|needed| needed.progress).collect::<Vec<_>>();
     let at = |name| kitchen.location_named(name).expect("a place");
     use ItemProgress::{InWork, Missing, Ready, Stacked};
     // In the order of the recipe file: rice, nori, tuna. Cooked rice is ready for the maki before it is in work for the nigiri.
     assert_eq!(progress(0), [Missing, Stacked, InWork(at("counter"))]);
     assert_eq!(progress(1), [Ready(at("cooking_pot")), Missing, Missing]);
+}
+
+/// What each order needs after these presses of the robot, where the second order was there before all of them, and the
+/// first one appears after `before` of them: the progress of its items in the order of the recipe file, and whether it
+/// was begun.
+fn needs_of(dishes: [&str; 2], presses: &[&str], before: usize) -> [(Vec<ItemProgress>, bool); 2] {
+    let kitchen = kitchen();
+    let dish = |name: &str| OrderContent::Dish(kitchen.dish_named(name).expect("a dish"));
+    let (mut state, mut timeline) = (kitchen.empty_state(), Vec::new());
+    for step in 0..=presses.len() {
+        for (index, appears) in [(1, 0), (0, before)] {
+            if step == appears {
+                let order = kitchen.orders[index];
+                state.set_order(order, dish(dishes[index]));
+                timeline.push(TimelineEntry { time: at(step as f64), what: TimelineEvent::OrderShown { order } });
+            }
+        }
+        let Some(name) = presses.get(step) else { continue };
+        let button = kitchen.button_named(Agent::Robot, name).expect("a button");
+        let press = kitchen.try_press(state, Agent::Robot, button);
+        let (agent, no_effect, after) = (Agent::Robot, None, press.after);
+        let what = TimelineEvent::Press { agent, button, before: state, after, no_effect };
+        timeline.push(TimelineEntry { time: at(step as f64), what });
+        state = after;
+    }
+    let found = order_needs(&kitchen, &timeline, state);
+    [0, 1].map(|index| {
+        let progress = found[index].items.iter().map(|needed| needed.progress).collect();
+        (progress, found[index].is_begun)
+    })
+}
+
+#[test]
+fn a_stack_is_that_of_the_order_it_was_begun_for_and_new_orders_move_no_tick() {
+    use ItemProgress::{Missing, Ready, Stacked};
+    let hand = kitchen().hands[Agent::Robot.index()];
+    let nori = ["take nori", "assembly_board"];
+    let [newer, older] = needs_of(["tuna maki", "salmon maki"], &nori, 2);
+    assert_eq!((newer.0, newer.1), (vec![Missing; 3], false), "the upper order is the newer one");
+    assert_eq!((older.0, older.1), (vec![Missing, Stacked, Missing], true));
+    // So it is with two orders of one dish, and with what is not stacked yet.
+    for (presses, there) in [(&nori[..], Stacked), (&nori[..1], Ready(hand))] {
+        for before in [1, presses.len()] {
+            let [without, with] = needs_of(["tuna maki", "tuna maki"], presses, before);
+            assert_eq!(with.0, [Missing, there, Missing], "{presses:?}, {before}");
+            assert_eq!((without.0, without.1), (vec![Missing; 3], false));
+        }
+    }
+    // A second sheet is for the order that has none; what the begun order needs comes first to it.
+    let [upper, lower] = needs_of(["tuna maki", "salmon maki"], &["take nori", "assembly_board", "take nori"], 2);
+    assert_eq!((upper.0, lower.0), (vec![Missing, Ready(hand), Missing], vec![Missing, Stacked, Missing]));
 }
 
 #[test]

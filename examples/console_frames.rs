@@ -161,7 +161,7 @@ impl Stage {
         let belief = self.engine.belief();
         self.model.belief.note(BeliefSnapshot::new(&session.kitchen, session.state, belief, last.time, by_gaze));
         let judged = self.engine.judged();
-        self.model.errors.extend(ExplainedError::among(&session.kitchen, &judged[self.judged..]));
+        self.model.errors.extend(ExplainedError::among(session, &judged[self.judged..]));
         self.judged = judged.len();
         let best = session.advice.as_ref().and_then(|advice| advice.best.clone());
         if best != self.best.0 {

@@ -85,8 +85,7 @@ impl Stage {
             }
         }
         let judged = self.engine.judged();
-        let kitchen = &self.engine.session().kitchen;
-        self.model.errors.extend(ExplainedError::among(kitchen, &judged[self.judged..]));
+        self.model.errors.extend(ExplainedError::among(self.engine.session(), &judged[self.judged..]));
         self.judged = judged.len();
         (self.model.now, self.model.clock) = (now, now);
     }

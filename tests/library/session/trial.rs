@@ -249,18 +249,18 @@ fn an_error_is_explained_by_what_the_orders_need() {
     let carried = [(Human, "take shrimp"), (Human, "counter"), (Human, "counter")];
     check(&["crab maki"], &carried, "no order needs raw shrimp");
     // Who did it already, and when; and nothing is said of what cannot be known.
-    let cut = [(Human, "take tuna"), (Human, "cutting_board"), (Robot, "cut"), (Human, "cut")];
-    check(&["tuna nigiri"], &cut, "it is cut tuna already, by the robot 5 s ago");
+    let cut = [(Human, "take salmon"), (Human, "cutting_board"), (Robot, "cut"), (Human, "cut")];
+    check(&["salmon nigiri"], &cut, "it is cut salmon already, by the robot 5 s ago");
     let raw = [(Human, "take shrimp"), (Human, "cutting_board"), (Human, "cut")];
     check(&["shrimp nigiri"], &raw, "raw shrimp cannot be processed there");
     let dish = [
         rice.as_slice(),
         &[(Human, "shape"), (Human, "assembly_board"), (Human, "take nori"), (Human, "assembly_board")],
-        &[(Human, "take tuna"), (Human, "cutting_board"), (Human, "cut"), (Human, "cutting_board")],
+        &[(Human, "take salmon"), (Human, "cutting_board"), (Human, "cut"), (Human, "cutting_board")],
         &[(Human, "assembly_board"), (Human, "assembly_board"), (Human, "plate"), (Human, "serve 1")],
     ]
     .concat();
-    check(&["crab maki", "tuna nigiri"], &dish, "the plate holds order 2's dish");
+    check(&["crab maki", "salmon nigiri"], &dish, "the plate holds order 2's dish");
 }
 
 #[test]

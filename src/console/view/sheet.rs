@@ -369,7 +369,6 @@ impl Page {
     /// Adds an alarm to the top of the page, where it stays.
     fn head(&mut self, text: &str) {
         self.text(0, text, TextRole::Alarm);
-        self.space();
         self.heads = self.lines.len();
     }
 

@@ -323,7 +323,7 @@ fn false_beliefs_are_the_same_in_replay_review_and_annotations() {
         .filter(|(_, text)| !text.is_empty())
         .map(|((time, place), text)| (time, place, text))
         .collect();
-    assert_eq!(bars, held.iter().cloned().collect());
+    assert_eq!(bars, held.iter().cloned().collect::<BTreeSet<_>>());
     // So have annotations.
     let about = ("a recording".to_string(), None);
     let annotations = collector.finish(&replay.follower, about, &BTreeMap::new(), &[], false);

@@ -365,11 +365,11 @@ fn a_signal_has_its_reason_as_long_as_it_is_shown_and_then_what_became_of_it() {
             assert!(page.contains(bar), "at {}: {page}", moment.time);
         }
     }
-    let whole = moments.iter().flat_map(|moment| &moment.rows).filter_map(|row| match &row.shown {
+    let mut whole = moments.iter().flat_map(|moment| &moment.rows).filter_map(|row| match &row.shown {
         EntityData::WholePage(text) => Some(text),
         _ => None,
     });
-    let page = whole.last().expect("a page of the signals");
+    let page = whole.next_back().expect("a page of the signals");
     for verdict in verdicts {
         assert!(page.contains(&format!("judged {}", verdict.name())), "{verdict:?}: {page}");
     }

@@ -31,7 +31,7 @@ fn check_damage(name: &str, bad: impl FnOnce(&Path), says: &str) {
     bad(&recording.join(LOG_NAME));
     terminal.see("RECORDING LOST");
     terminal.see("EMERGENCY STOP");
-    terminal.see("CLOSED");
+    terminal.see("ENDED EARLY");
     let after = terminal.log();
     let complete = before.rfind('\n').map_or("", |end| &before[..=end]);
     assert!(after.starts_with(complete), "{name}: what was acknowledged is lost");

@@ -136,7 +136,7 @@ fn a_recording_is_written_by_one_program_and_continued_once() {
 /// After the alarm: the robot is stopped, the session over, everything that the log had before is there, and verifies.
 fn is_over(terminal: &Terminal, before: &str, recording: &Path) {
     terminal.see("EMERGENCY STOP");
-    terminal.see("CLOSED");
+    terminal.see("ENDED EARLY");
     let after = fs::read_to_string(recording.join(LOG_NAME)).expect("a log");
     let complete = before.rfind('\n').map_or("", |end| &before[..=end]);
     assert!(after.starts_with(complete), "what was acknowledged is lost");

@@ -319,8 +319,8 @@ impl<'a> Place<'a> {
             self.news(brush, room, lines);
             return;
         }
-        let thought = self.thinks.as_ref().map_or(0, |(thinks, _)| wrap(&thinks_of(thinks), room.width).len() as u16);
-        let own_line = u16::from(lines + thought < room.height);
+        // A belief that takes several lines is shortened rather than that nobody knows when the place changed.
+        let own_line = u16::from(lines + u16::from(self.thinks.is_some()) < room.height);
         let has_news = self.news(brush, Rect { height: lines + own_line, ..room }, lines);
         self.belief(brush, room, lines + if has_news { own_line } else { 0 });
     }

@@ -346,6 +346,7 @@ fn false_beliefs_are_the_same_in_replay_review_and_annotations() {
 fn a_signal_has_its_reason_as_long_as_it_is_shown_and_then_what_became_of_it() {
     let (mut files, out) = (session("default.toml"), folder("scene-signals"));
     (files.spec.trial.condition, files.spec.trial.seconds, files.spec.seed) = (Condition::Assistant, 240.0, 7);
+    files.spec.robot.arm = ArmKind::Timed;
     simulate_into(files, 1, &out);
     let recording = only_recording(&out);
     let (moments, _) = shown(&recording);

@@ -189,6 +189,7 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         answer([])
         assert page.ask("document.querySelector('.next').getAttribute('aria-disabled')") == "true"
         click('[data-option="lenses"]')
+        answer(["lenses"])
         keyboard.press("2")
         answer(["glasses", "lenses"])
         pictures("several")

@@ -28,6 +28,8 @@ const SAME_SQUARE: f64 = 0.4;
 pub struct SeenFlash {
     /// When it began, in seconds in the film: half a frame before the first bright one, since it began between two.
     pub onset_s: f64,
+    /// Time between these two frames, in seconds: a film can have frames of different length.
+    pub between_s: f64,
     /// Brightness before and after it, and its rise, of 255.
     pub dark: u8,
     pub contrast: u8,
@@ -97,8 +99,9 @@ impl FlashSearch {
                 if (flash_s - FLASH_S).abs() <= seconds + frames * frame_s && flashes.len() < MOST_FLASHES {
                     // Screen recorders have no frames while nothing changes: a long gap before the flash says nothing.
                     let [before_s, bright_s, after_s] = [onset - 1, onset, onset + 1].map(|at| self.times_s[at]);
-                    let onset_s = bright_s - (bright_s - before_s).min(after_s - bright_s) / 2.0;
-                    flashes.push(SeenFlash { onset_s, dark: found.dark, contrast });
+                    let between_s = (bright_s - before_s).min(after_s - bright_s);
+                    let onset_s = bright_s - between_s / 2.0;
+                    flashes.push(SeenFlash { onset_s, between_s, dark: found.dark, contrast });
                 }
             }
         }
@@ -261,7 +264,8 @@ fn align_pixel(
     if !is_enough || 4 * strange > best.len() || !is_one_square {
         return Err(few());
     }
-    if found.residual_s > frame_s {
+    let longest_s = best.iter().map(|(_, flash)| flash.between_s).fold(frame_s, f64::max);
+    if found.residual_s > longest_s {
         return Err(AlignmentRefusal::Residual { residual_s: found.residual_s, flashes: found.flashes });
     }
     Ok(found)

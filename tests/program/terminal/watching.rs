@@ -24,7 +24,8 @@ fn a_running_session_is_watched_from_another_terminal_and_looked_at_again() {
     other.run(&["replay", &recording]);
     other.see("play 1x");
     assert!(!other.screen().contains("READY"), "a replay opens at the start of the trial: {}", other.screen());
-    for (key, seen) in [("+", "play 2x"), (".", "paused 2x"), ("End", "ENDED EARLY"), ("Home", "before the trial, 0:00 of")]
+    for (key, seen) in
+        [("+", "play 2x"), (".", "paused 2x"), ("End", "ENDED EARLY"), ("Home", "before the trial, 0:00 of")]
     {
         other.key(key);
         other.see(seen);

@@ -133,9 +133,6 @@ impl Review {
         model.playback = Some(Playback { excluded, running, ..Playback::new(name) });
         let folder = film.replay.log().folder();
         let (players, unshown) = film_player::open_all(&video_file::read(folder)?.films, folder);
-        if let Some(why) = unshown {
-            model.say(NoticeLevel::Done, format!("the film of this recording is not shown: {why}"));
-        }
         let now = Instant::now();
         let mut review = Review {
             film,
@@ -159,6 +156,12 @@ impl Review {
         review.begin_coding();
         if follow {
             review.go(ReplayAction::ToEnd);
+        }
+        // Raters have to know before they code without it.
+        if let Some(why) = unshown {
+            let coding = review.model.coding.as_ref().map(rater_files::opening_words);
+            let coding = coding.map_or(String::new(), |words| format!("{words}; "));
+            review.model.say(NoticeLevel::Done, format!("{coding}the film of this recording is not shown: {why}"));
         }
         Ok(review)
     }

@@ -80,7 +80,13 @@ fn a_rater_codes_errors_undoes_goes_on_another_time_and_settles_with_another_one
     let kept = rows(&terminal, "codes-R1.csv");
     assert!(matches!(&kept[..], [a, b] if a.ends_with(",slip,") && b.ends_with(",belief,cooking_pot")), "{kept:?}");
 
+    let film = terminal.folder.join("room.mp4").display().to_string();
+    std::fs::write(&film, "a film").expect("written");
+    done(&["video", "attach", &name, &film, "--at", "12"]);
+    std::fs::remove_file(&film).expect("removed");
     terminal.run(&["replay", &name, "--rater", "R1"]);
+    // Who codes without the film that there was has to know.
+    terminal.see("the film of this recording is not shown");
     terminal.see("R1: 2/");
     terminal.see("error 3 is the first without a code");
     terminal.key("C-c");

@@ -10,7 +10,6 @@ use tempfile::TempPath;
 
 use crate::run::terminal::asked_to_end;
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::Agent;
 use tomcom_core::measures::raters::CodableErrors;
 use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_devices::rerun::{FilmFrame, RerunWriter, ShownRecording, StreamIdentity, StreamOutlets, WebViewer};
@@ -414,14 +413,13 @@ pub fn landmarks(recording: &Path, kinds: &[ReplayLandmark]) -> FileResult<Vec<R
         let codes =
             rater_codes::read_all(replay.log().folder(), &CodableErrors::from_presses(kitchen, &follower.judged))?;
         let errors = follower.judged.iter().enumerate().filter(|(_, press)| press.verdict.error);
-        for (number, (nth, press)) in (1..).zip(errors) {
-            let name = wording::button(kitchen, Agent::Human, press.button);
+        let explained = ExplainedError::among(session, &follower.judged);
+        for ((number, (nth, press)), error) in (1..).zip(errors).zip(explained) {
             let coded = codes.iter().filter_map(|(rater, codes)| Some((rater, codes.0.get(&press.seq)?)));
             let coded: String = coded.map(|(rater, code)| format!("; {rater}: {}", wording::code(code))).collect();
             let next = follower.judged.get(nth + 1).map(|next| next.time);
-            for why in ExplainedError::among(session, std::slice::from_ref(press)) {
-                add(press.time, next, format!("error {number}: {name}: {}{coded}", why.with_cause));
-            }
+            let ExplainedError { press: name, with_cause, .. } = error;
+            add(press.time, next, format!("error {number}: {name}: {with_cause}{coded}"));
         }
     }
     if kinds.contains(&ReplayLandmark::Signal) {

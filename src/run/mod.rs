@@ -22,6 +22,7 @@ pub mod key_file;
 pub mod leaving;
 pub mod list_cache;
 pub mod live;
+mod mind_link;
 pub mod near_path;
 #[cfg(feature = "rerun")]
 pub mod open_viewer;

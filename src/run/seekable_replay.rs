@@ -482,6 +482,8 @@ impl Snapshots {
 
     /// The session of a snapshot with its timeline.
     fn session(&self, kept: &Snapshot) -> Session {
-        Session { timeline: self.timeline[..kept.entries].to_vec(), ..kept.session.clone() }
+        let mut session = kept.session.clone();
+        session.timeline = self.timeline[..kept.entries].to_vec();
+        session
     }
 }

@@ -3,13 +3,14 @@
 
 use std::str::FromStr;
 
-use crate::advisor::Advisor;
+use crate::advisor::{AdviceRequest, Advisor};
 use crate::engine::SessionEngine;
-use crate::external::link::{Exchange, WaitedConcept};
-use crate::external::participant::WaitedParticipant;
-use crate::external::{ExternalMinds, NoMinds};
+use crate::external::concept::ConceptDialogue;
+use crate::external::link::{Exchange, WaitedMind};
+use crate::external::participant::ParticipantDialogue;
+use crate::external::{ExternalMinds, MindDialogue, NoMinds};
 use crate::protocol::ProtocolEvent;
-use crate::{Event, TimestampedEvent, TrialPhase};
+use crate::{Event, Session, TimestampedEvent, TrialPhase};
 use tomcom_core::base::time::SessionTime;
 
 /// Time after which a simulated attendant resumes an arm that has stopped by itself.
@@ -57,7 +58,7 @@ impl Outside<'_> {
 /// Who answers requests for advice.
 enum Assistant {
     Own(Box<Advisor>),
-    External(Box<WaitedConcept>),
+    External(Box<WaitedMind<ConceptDialogue>>),
 }
 
 /// Puts into the session what came back; aborts the trial if nothing more can come.
@@ -92,7 +93,10 @@ pub fn run_with<E>(
     engine.input(SessionTime::ZERO, Event::TrialStarted).events.iter().try_for_each(&mut record)?;
     let mut assistant = match engine.session().spec.external_concept().cloned() {
         Some(mind) => {
-            let (concept, exchange) = WaitedConcept::open(engine.session(), &mind, outside.minds);
+            let dialogue = ConceptDialogue::new(engine.session(), &mind);
+            let begin = dialogue.begin(engine.session());
+            let (concept, exchange) =
+                WaitedMind::open(outside.minds, dialogue, begin, |dialogue, text| dialogue.take(text));
             take(engine, exchange, &mut record)?;
             Some(Assistant::External(Box::new(concept)))
         }
@@ -100,9 +104,13 @@ pub fn run_with<E>(
     };
     let mut participant = match engine.session().spec.participant.external.clone() {
         Some(command) => {
-            let (participant, outcome) = WaitedParticipant::open(engine.session(), &command, outside.minds);
-            take(engine, outcome, &mut record)?;
-            participant
+            let (session, dialogue) = (engine.session(), ParticipantDialogue::new(&command));
+            let [scene, _] = outside.minds.sight(session);
+            let begin = dialogue.begin(session, scene);
+            let (participant, exchange) =
+                WaitedMind::open(outside.minds, dialogue, begin, |dialogue, text| dialogue.take(session, text));
+            take(engine, exchange, &mut record)?;
+            Some(participant)
         }
         None => None,
     };
@@ -117,19 +125,19 @@ pub fn run_with<E>(
                 Assistant::Own(advisor) => {
                     Exchange { events: vec![Event::Advised(advisor.answer(&question))], failed: None }
                 }
-                Assistant::External(concept) => concept.ask(&question),
+                Assistant::External(concept) => ask(concept, &question),
             };
             time.questions += 1;
             time.total_ns += (outside.now_ns)().saturating_sub(began);
             take(engine, exchange, &mut record)?;
         }
         if let Some(participant) = &mut participant {
-            take(engine, participant.look(engine.session(), outside.minds), &mut record)?;
+            take(engine, look(participant, engine.session(), outside.minds), &mut record)?;
             let next = engine.next_due().unwrap_or(engine.session().time);
             // A press that was due while the task stood still is made when it goes on.
-            if let Some(due) = participant.due(engine.session()).filter(|due| *due < next) {
+            if let Some(due) = participant.dialogue.due(engine.session()).filter(|due| *due < next) {
                 let at = due.max(engine.session().time);
-                for event in participant.act(engine.session()) {
+                for event in participant.dialogue.act(engine.session()) {
                     engine.input(at, event).events.iter().try_for_each(&mut record)?;
                 }
                 continue;
@@ -142,6 +150,27 @@ pub fn run_with<E>(
     let end = engine.session().time;
     engine.input(end, Event::SessionEnded).events.iter().try_for_each(&mut record)?;
     Ok(time)
+}
+
+fn ask(concept: &mut WaitedMind<ConceptDialogue>, request: &AdviceRequest) -> Exchange {
+    let (question, mut events) = concept.dialogue.question(request);
+    let wait_s = concept.dialogue.mind().wait_s;
+    let Exchange { events: told, failed } = concept.exchange(question, wait_s, |dialogue, text| dialogue.take(text));
+    events.extend(told);
+    Exchange { events, failed }
+}
+
+/// Asks the participant, if the display changed and no press is under way.
+fn look(participant: &mut WaitedMind<ParticipantDialogue>, session: &Session, minds: &dyn ExternalMinds) -> Exchange {
+    let display = || {
+        let [_, display] = minds.sight(session);
+        display
+    };
+    let Some(question) = participant.dialogue.question(session, session.time, display) else {
+        return Exchange::default();
+    };
+    let wait_s = participant.dialogue.mind().wait_s;
+    participant.exchange(question, wait_s, |dialogue, text| dialogue.take(session, text))
 }
 
 const MAX_SHARDS: u64 = 100_000;

@@ -31,6 +31,7 @@ pub mod headless;
 pub mod history;
 pub mod log;
 pub mod offers;
+pub mod order_needs;
 pub mod orders;
 pub mod person_code;
 pub mod plan;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::event::{Event, TrialEndReason};
 use crate::external::ExternalStatus;
 use crate::gaze_check::{AcceptedGazeCheck, RunningGazeCheck};
+use crate::order_needs::{OrderNeeds, OrderWork};
 use crate::probes::TrialProbes;
 use crate::protocol::StudyProtocolState;
 use crate::settings::{Condition, GazeSource, WizardVisibility};
@@ -77,6 +78,8 @@ pub struct Session {
     pub calibrated: Option<AcceptedGazeCheck>,
     /// Events without gaze samples.
     pub timeline: Vec<TimelineEntry>,
+    /// Which order each content counts for, after the timeline's last entry.
+    pub(crate) order_work: OrderWork,
     pub probes: TrialProbes,
     /// If the recording belongs to a plan.
     pub protocol: Option<StudyProtocolState>,
@@ -152,6 +155,7 @@ impl Session {
             calibration: None,
             calibrated: None,
             timeline: Vec::new(),
+            order_work: OrderWork::default(),
             probes: TrialProbes::default(),
             protocol,
             ended_early: false,
@@ -231,6 +235,11 @@ impl Session {
         StudyArm::from_settings(self.spec.trial.condition, self.spec.assistant.concept.name(), saw_advice)
     }
 
+    /// The needs of all orders now.
+    pub fn order_needs(&self) -> Vec<OrderNeeds> {
+        self.order_work.clone().needs(&self.kitchen, self.state)
+    }
+
     /// Of both agents in the trial.
     pub fn all_presses(&self) -> u32 {
         self.presses.iter().sum()
@@ -258,7 +267,9 @@ impl Session {
     }
 
     pub(crate) fn note(&mut self, time: SessionTime, what: TimelineEvent) {
-        self.timeline.push(TimelineEntry { time, what });
+        let entry = TimelineEntry { time, what };
+        self.order_work.follow(&self.kitchen, std::slice::from_ref(&entry));
+        self.timeline.push(entry);
     }
 
     pub(crate) fn note_event(&mut self, time: SessionTime, event: &Event) {

@@ -10,11 +10,11 @@ use tomcom::run::tournament::{self, TournamentRequest};
 use tomcom_core::communication::settings::{ConceptSpec, ExternalMind};
 use tomcom_devices::external::LocalMinds;
 use tomcom_session::advisor::AdviceRequest;
-use tomcom_session::external::concept::{ConceptDialogue, DialogueOutcome};
+use tomcom_session::external::concept::ConceptDialogue;
 use tomcom_session::external::participant::ParticipantDialogue;
 use tomcom_session::external::{
-    ExternalEvent, ExternalMinds, MOST_FAULTS, MindConnection, MindFault, MindNews, MindReader, MindRole, MindWriter,
-    SCHEMA,
+    DialogueOutcome, ExternalEvent, ExternalMinds, MOST_FAULTS, MindConnection, MindDialogue, MindFault, MindNews,
+    MindReader, MindRole, MindWriter, SCHEMA,
 };
 use tomcom_session::headless::{Outside, run_with};
 use tomcom_session::preflight_checks::{self, PreflightVerdict};

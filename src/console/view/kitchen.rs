@@ -17,7 +17,6 @@ use crate::console::text_columns::{fit, squeeze, width, wrap};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, LocationKind, OrderContent};
 use tomcom_session::Session;
-use tomcom_session::history::order_needs::order_needs;
 use tomcom_session::history::wording;
 use tomcom_session::settings::Condition;
 
@@ -49,7 +48,7 @@ pub fn draw(
     }
     // Whoever plays the participant at this keyboard has to remember the recipes.
     let needs = match model.layer {
-        KeyLayer::Wizard => order_needs(&session.kitchen, &session.timeline, session.state),
+        KeyLayer::Wizard => session.order_needs(),
         KeyLayer::Participant => Vec::new(),
     };
     let offered = offers::shown(session, model).and_then(|offer| offer.place(session));

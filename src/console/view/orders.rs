@@ -7,7 +7,7 @@ use crate::console::kitchen_map::KitchenMapBox;
 use crate::console::text_columns::width;
 use ratatui::layout::Rect;
 use tomcom_core::kitchen::OrderContent;
-use tomcom_session::history::order_needs::{ItemProgress, NeededItem, OrderNeeds};
+use tomcom_session::order_needs::{ItemProgress, NeededItem, OrderNeeds};
 
 /// Short text in place of a false belief, where there is no room for it.
 const FALSE_BELIEF: &str = "false belief";

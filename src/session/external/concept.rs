@@ -7,7 +7,10 @@ use serde::{Deserialize, Serialize};
 
 use super::happenings::Happening;
 use super::kitchen_description::{KitchenDescription, true_values};
-use super::{ExternalEvent, MOST_FAULTS, MindFault, MindRole, PROTOCOL, ToldBelief, check_belief, recorded_text};
+use super::{
+    DialogueOutcome, ExternalEvent, MOST_FAULTS, MindDialogue, MindFault, MindRole, PROTOCOL, ToldBelief, check_belief,
+    recorded_text,
+};
 use crate::advisor::AdviceRequest;
 use crate::{Event, Session};
 use tomcom_core::base::time::SessionTime;
@@ -120,12 +123,23 @@ pub struct ConceptDialogue {
     is_over: bool,
 }
 
-/// What to put into the session after a line.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct DialogueOutcome {
-    pub events: Vec<Event>,
-    /// Whether the connection is to be closed.
-    pub ends: bool,
+impl MindDialogue for ConceptDialogue {
+    fn mind(&self) -> &ExternalMind {
+        &self.mind
+    }
+
+    fn has_begun(&self) -> bool {
+        self.began
+    }
+
+    fn failed(&mut self, fault: MindFault, found: &str) -> DialogueOutcome {
+        if self.is_over {
+            return DialogueOutcome::default();
+        }
+        self.is_over |= fault.is_final();
+        let event = self.fault(fault, recorded_text(found));
+        self.after(vec![event])
+    }
 }
 
 impl ConceptDialogue {
@@ -144,17 +158,9 @@ impl ConceptDialogue {
         }
     }
 
-    pub fn mind(&self) -> &ExternalMind {
-        &self.mind
-    }
-
     /// Whether the last question still waits for its answer.
     pub fn is_waiting(&self) -> bool {
         !self.is_over && (!self.began || self.pending.is_some())
-    }
-
-    pub fn has_begun(&self) -> bool {
-        self.began
     }
 
     /// The first question.
@@ -234,16 +240,6 @@ impl ConceptDialogue {
             events.push(self.fault(MindFault::GivenUp, format!("{MOST_FAULTS} faults")));
         }
         DialogueOutcome { events, ends: self.is_over }
-    }
-
-    /// The last question was not answered in time, or the connection has ended.
-    pub fn failed(&mut self, fault: MindFault, found: &str) -> DialogueOutcome {
-        if self.is_over {
-            return DialogueOutcome::default();
-        }
-        self.is_over |= fault.is_final();
-        let event = self.fault(fault, recorded_text(found));
-        self.after(vec![event])
     }
 
     fn fault(&mut self, fault: MindFault, found: String) -> Event {

@@ -17,7 +17,7 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use crate::Session;
+use crate::{Event, Session};
 use tomcom_core::communication::settings::ExternalMind;
 use tomcom_core::kitchen::{AspectId, Kitchen, State};
 
@@ -123,6 +123,25 @@ impl ExternalEvent {
             ExternalEvent::Fault { fault, found, .. } => Some(format!("external {role} {}: {found}", fault.words())),
         }
     }
+}
+
+/// What to put into the session after a line.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DialogueOutcome {
+    pub events: Vec<Event>,
+    /// Whether the connection is to be closed.
+    pub ends: bool,
+}
+
+/// What the dialogues of both roles have in common. A dialogue has no connection: it makes lines, and takes lines.
+pub trait MindDialogue {
+    fn mind(&self) -> &ExternalMind;
+
+    /// Whether the first question was answered.
+    fn has_begun(&self) -> bool;
+
+    /// The last question was not answered in time, or the connection has ended.
+    fn failed(&mut self, fault: MindFault, found: &str) -> DialogueOutcome;
 }
 
 /// What a session knows of its external minds.

@@ -1,16 +1,14 @@
 //! The dialogue with an external participant: it is told what a person at the display sees, and answers with presses.
 
 use std::collections::BTreeMap;
-use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::concept::{AnswerId, DialogueOutcome, introduction, line};
-use super::link::{Exchange, is_of_no_question};
+use super::concept::{AnswerId, introduction, line};
 use super::{
-    ExternalEvent, ExternalMinds, MOST_FAULTS, MindConnection, MindFault, MindNews, MindRole, PROTOCOL,
-    STARTS_WITHIN_S, ToldBelief, check_belief, recorded_text,
+    DialogueOutcome, ExternalEvent, MOST_FAULTS, MindDialogue, MindFault, MindRole, PROTOCOL, ToldBelief, check_belief,
+    recorded_text,
 };
 use crate::{Event, Session};
 use tomcom_core::base::time::SessionTime;
@@ -83,6 +81,35 @@ pub struct ParticipantDialogue {
     is_over: bool,
 }
 
+impl MindDialogue for ParticipantDialogue {
+    fn mind(&self) -> &ExternalMind {
+        &self.mind
+    }
+
+    fn has_begun(&self) -> bool {
+        self.began
+    }
+
+    /// Too many faults end the dialogue, as does the end of the connection.
+    fn failed(&mut self, kind: MindFault, found: &str) -> DialogueOutcome {
+        if self.is_over {
+            return DialogueOutcome::default();
+        }
+        self.faults += 1;
+        let given_up = self.faults >= MOST_FAULTS;
+        self.is_over = given_up || kind.is_final();
+        if self.is_over {
+            self.next = None;
+        }
+        let (fault, found) = match given_up {
+            true => (MindFault::GivenUp, format!("{MOST_FAULTS} faults; the last: {found}")),
+            false => (kind, found.to_string()),
+        };
+        let event = ExternalEvent::Fault { role: MindRole::Participant, fault, found: recorded_text(&found) };
+        DialogueOutcome { events: vec![Event::External(event)], ends: self.is_over }
+    }
+}
+
 impl ParticipantDialogue {
     pub fn new(command: &str) -> ParticipantDialogue {
         ParticipantDialogue {
@@ -98,14 +125,6 @@ impl ParticipantDialogue {
             faults: 0,
             is_over: false,
         }
-    }
-
-    pub fn mind(&self) -> &ExternalMind {
-        &self.mind
-    }
-
-    pub fn has_begun(&self) -> bool {
-        self.began
     }
 
     /// The first question.
@@ -187,25 +206,6 @@ impl ParticipantDialogue {
         }
     }
 
-    /// A fault; too many of them end the dialogue, as does the end of the connection.
-    pub fn failed(&mut self, kind: MindFault, found: &str) -> DialogueOutcome {
-        if self.is_over {
-            return DialogueOutcome::default();
-        }
-        self.faults += 1;
-        let given_up = self.faults >= MOST_FAULTS;
-        self.is_over = given_up || kind.is_final();
-        if self.is_over {
-            self.next = None;
-        }
-        let (fault, found) = match given_up {
-            true => (MindFault::GivenUp, format!("{MOST_FAULTS} faults; the last: {found}")),
-            false => (kind, found.to_string()),
-        };
-        let event = ExternalEvent::Fault { role: MindRole::Participant, fault, found: recorded_text(&found) };
-        DialogueOutcome { events: vec![Event::External(event)], ends: self.is_over }
-    }
-
     fn next_move(&self, session: &Session, text: &str) -> Result<Option<NextMove>, (MindFault, String)> {
         let malformed = |found: String| (MindFault::Malformed, found);
         let AnswerId { id } = serde_json::from_str(text).map_err(|error| malformed(format!("{error} in {text}")))?;
@@ -234,89 +234,6 @@ impl ParticipantDialogue {
                 Ok(Some(NextMove { at: at(answer.after_s.unwrap_or_default()), press }))
             }
             None => Ok(answer.after_s.map(|after_s| NextMove { at: at(after_s), press: None })),
-        }
-    }
-}
-
-/// An external participant that is waited for.
-#[derive(Debug)]
-pub struct WaitedParticipant {
-    dialogue: ParticipantDialogue,
-    connection: MindConnection,
-}
-
-/// A trial without a console cannot go on without its participant.
-fn fatal(outcome: DialogueOutcome) -> Exchange {
-    let failed = outcome.events.iter().rev().find_map(|event| match event {
-        Event::External(event) => event.words(),
-        _ => None,
-    });
-    Exchange { failed, events: outcome.events }
-}
-
-impl WaitedParticipant {
-    /// Starts the program and waits for its first answer.
-    pub fn open(session: &Session, command: &str, minds: &dyn ExternalMinds) -> (Option<WaitedParticipant>, Exchange) {
-        let mut dialogue = ParticipantDialogue::new(command);
-        let mut connection = match minds.open(dialogue.mind()) {
-            Ok(connection) => connection,
-            Err(found) => return (None, fatal(dialogue.failed(MindFault::NotStarted, &found))),
-        };
-        let [scene, _] = minds.sight(session);
-        let news = connection.ask(dialogue.begin(session, scene), Duration::from_secs_f64(STARTS_WITHIN_S));
-        let outcome = match news {
-            MindNews::Line(text) => dialogue.take(session, &text),
-            MindNews::Nothing => dialogue.failed(MindFault::Silent, &format!("no answer within {STARTS_WITHIN_S} s")),
-            MindNews::Over(found) => dialogue.failed(MindFault::Ended, &found),
-        };
-        match dialogue.has_begun() {
-            true => {
-                (Some(WaitedParticipant { dialogue, connection }), Exchange { events: outcome.events, failed: None })
-            }
-            false => (None, fatal(outcome)),
-        }
-    }
-
-    /// When it presses or wants to be asked again.
-    pub fn due(&self, session: &Session) -> Option<SessionTime> {
-        self.dialogue.due(session)
-    }
-
-    /// The events of the move that is due.
-    pub fn act(&mut self, session: &Session) -> Vec<Event> {
-        self.dialogue.act(session)
-    }
-
-    /// Asks it, if the display changed and no press is under way, and waits for its answer. What nobody asked for is
-    /// passed over.
-    pub fn look(&mut self, session: &Session, minds: &dyn ExternalMinds) -> Exchange {
-        let display = || {
-            let [_, display] = minds.sight(session);
-            display
-        };
-        let Some(question) = self.dialogue.question(session, session.time, display) else { return Exchange::default() };
-        let wait_s = self.dialogue.mind().wait_s;
-        let wait = Duration::from_secs_f64(wait_s);
-        let mut news = self.connection.ask(question, wait);
-        let mut events = Vec::new();
-        loop {
-            let DialogueOutcome { events: mut told, ends } = match news {
-                MindNews::Line(text) => self.dialogue.take(session, &text),
-                MindNews::Nothing => {
-                    let silent = self.dialogue.failed(MindFault::Silent, &format!("no answer within {wait_s} s"));
-                    DialogueOutcome { ends: true, ..silent }
-                }
-                MindNews::Over(found) => self.dialogue.failed(MindFault::Ended, &found),
-            };
-            let is_passed_over = !told.is_empty() && told.iter().all(is_of_no_question);
-            events.append(&mut told);
-            if ends {
-                return fatal(DialogueOutcome { events, ends });
-            }
-            if !is_passed_over {
-                return Exchange { events, failed: None };
-            }
-            news = self.connection.from.receive(wait);
         }
     }
 }

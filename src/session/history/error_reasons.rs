@@ -1,8 +1,8 @@
 //! Why a press of the human was an error, in words. The reason follows from the true state and recipes, the press and
 //! the human's best press: it is the same live, in replays, and for raters, and tells nothing about beliefs.
 
-use super::order_needs::{ItemProgress, NeededItem, OrderNeeds, OrderWork, becomes};
 use super::{event_words, wording};
+use crate::order_needs::{ItemProgress, NeededItem, OrderNeeds, OrderWork, becomes};
 use crate::{Session, TimelineEntry, TimelineEvent};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::rules::NoEffectReason;

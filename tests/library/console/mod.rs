@@ -47,7 +47,8 @@ impl Stage {
         model.recording = RecordingStatus::On("sessions/2026-03-14-P01-1".to_string());
         model.free_bytes = Some(1 << 40);
         let belief = DirichletBelief::prior(&kitchen, &PriorModel::default(), kitchen.empty_state());
-        let session = Session { has_console: true, ..Session::new(kitchen, spec, 0) };
+        let mut session = Session::new(kitchen, spec, 0);
+        session.has_console = true;
         Stage { session, model, seq: 0, belief }
     }
 

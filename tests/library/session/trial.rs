@@ -7,7 +7,7 @@ use tomcom_session::apply;
 use tomcom_session::engine::InputResult;
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::history::error_reasons::ExplainedError;
-use tomcom_session::history::order_needs::{ItemProgress, order_needs};
+use tomcom_session::order_needs::{ItemProgress, OrderWork};
 use tomcom_session::{TimelineEntry, TimelineEvent};
 use tomcom_study::analysis::trial_summary::{RegretSum, order_times};
 
@@ -275,7 +275,7 @@ fn what_is_there_counts_for_one_order_and_as_far_as_it_is() {
             [kitchen.location_named(place).map(|at| at.0), kitchen.content_named(content).map(|id| id.0)];
         state.set_code(LocationId(place.expect("a place")), content.expect("a content"));
     }
-    let found = order_needs(&kitchen, &[], state);
+    let found = OrderWork::default().needs(&kitchen, state);
     let progress = |index: usize| found[index].items.iter().map(|needed| needed.progress).collect::<Vec<_>>();
     let at = |name| kitchen.location_named(name).expect("a place");
     use ItemProgress::{InWork, Missing, Ready, Stacked};
@@ -307,7 +307,9 @@ fn needs_of(dishes: [&str; 2], presses: &[&str], before: usize) -> [(Vec<ItemPro
         timeline.push(TimelineEntry { time: at(step as f64), what });
         state = after;
     }
-    let found = order_needs(&kitchen, &timeline, state);
+    let mut work = OrderWork::default();
+    work.follow(&kitchen, &timeline);
+    let found = work.needs(&kitchen, state);
     [0, 1].map(|index| {
         let progress = found[index].items.iter().map(|needed| needed.progress).collect();
         (progress, found[index].is_begun)

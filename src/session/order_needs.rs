@@ -41,15 +41,8 @@ pub enum ItemProgress {
     Missing,
 }
 
-/// The needs of all orders in this state, after these entries of the trial.
-pub fn order_needs(kitchen: &Kitchen, timeline: &[TimelineEntry], state: State) -> Vec<OrderNeeds> {
-    let mut work = OrderWork::default();
-    work.follow(kitchen, timeline);
-    work.needs(kitchen, state)
-}
-
 /// Which order the content of each location counts for, followed over a trial.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct OrderWork {
     /// By location.
     counts_for: [Option<LocationId>; MAX_LOCATIONS],

@@ -101,6 +101,12 @@ impl EstimatedFalseBeliefs {
         last.filter(|last| last.ended.is_none_or(|ended| time <= ended))
     }
 
+    /// The false belief about an aspect that is held at a time, or ends then.
+    pub fn until(&self, aspect: AspectId, time: SessionTime) -> Option<&EstimatedFalseBelief> {
+        let last = self.of(aspect).find(|one| one.began <= time);
+        last.filter(|last| last.ended.is_none_or(|ended| time <= ended))
+    }
+
     /// When the belief about an aspect that is false at a time became right; `None` if it has not.
     pub fn corrected(&self, aspect: AspectId, time: SessionTime) -> Option<SessionTime> {
         let mut until = time;

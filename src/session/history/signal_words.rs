@@ -72,8 +72,9 @@ fn belief(follower: &SessionFollower, shown: &ShownSignalRecord) -> Option<Strin
     if shown.aspects().is_empty() {
         return None;
     }
+    // A press makes a belief false at the very time at which a signal follows it.
     let was_false: Vec<AspectId> =
-        shown.aspects().iter().copied().filter(|&aspect| track.before(aspect, shown.time).is_some()).collect();
+        shown.aspects().iter().copied().filter(|&aspect| track.until(aspect, shown.time).is_some()).collect();
     if was_false.is_empty() {
         return Some("by the estimate the belief was right already".to_string());
     }

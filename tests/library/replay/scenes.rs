@@ -4,7 +4,7 @@ use tomcom::run::seekable_replay::SeekableReplay;
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_devices::scene::{EntityData, EntityUpdate, SceneInputs, SceneUpdate, SessionScene};
 use tomcom_session::history::error_reasons::ExplainedError;
-use tomcom_session::history::wording;
+use tomcom_session::history::{signal_words, wording};
 use tomcom_session::replay::ReplayLandmark;
 use tomcom_session::settings::Condition;
 use tomcom_session::wizard_log::signal_verdicts;
@@ -374,7 +374,18 @@ fn a_signal_has_its_reason_as_long_as_it_is_shown_and_then_what_became_of_it() {
     for verdict in verdicts {
         assert!(page.contains(&format!("judged {}", verdict.name())), "{verdict:?}: {page}");
     }
-    assert!(page.contains("looked at after ") || page.contains("not looked at"), "{page}");
+    let looked: Vec<String> = signals
+        .iter()
+        .filter_map(|signal| Some(format!("looked at after {:.1} s", signal.seen?.secs_since(signal.time))))
+        .collect();
+    assert!(!looked.is_empty() && looked.iter().all(|looked| page.contains(looked)), "{looked:?}: {page}");
+    // What a signal corrected was false when it came, also if the press before it at the same time made it so.
+    let track = &replay.follower.false_beliefs;
+    for (nth, signal) in signals.iter().enumerate() {
+        let is_false = signal.aspects().iter().any(|&aspect| track.at(aspect, signal.time).is_some());
+        let outcome = signal_words::outcome(&replay.follower, nth);
+        assert!(!is_false || !outcome.contains("right already"), "{outcome}");
+    }
     // The value of a signal that was sent is past.
     let ends = moments.iter().flat_map(|moment| &moment.rows).filter(|row| row.shown == EntityData::NoValue);
     assert!(ends.count() >= signals.len());

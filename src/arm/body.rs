@@ -12,9 +12,10 @@ use crate::reaching::{ReachingBehaviour, ReachingHand};
 use crate::worker::{ArmCycleReport, PressFailure};
 
 /// Interval between recorded samples of a moving robot arm: about twelve per second.
-const TOLD_EVERY: SessionTime = SessionTime(80_000_000);
+pub const TOLD_EVERY: SessionTime = SessionTime(80_000_000);
 
-fn rounded(value: f64, parts: f64) -> f64 {
+/// A value in parts of one, such as thousandths, as it is recorded.
+pub fn rounded(value: f64, parts: f64) -> f64 {
     // Adding 0 turns -0 into 0, which is written differently in the log.
     (value * parts).round() / parts + 0.0
 }
@@ -152,8 +153,8 @@ impl SimulatedArm {
                 phase,
                 joints: self.arm.joints().map(|angle| rounded(angle, 1e4)),
                 force_n: rounded(told.force_n, 10.0),
-                hand_m: [place.at_m.x, place.at_m.y, place.at_m.z].map(|length| rounded(length, 1e3)),
-                hand_away_m: rounded(self.arm.distance(&place), 1e3),
+                hand_m: Some([place.at_m.x, place.at_m.y, place.at_m.z].map(|length| rounded(length, 1e3))),
+                hand_away_m: Some(rounded(self.arm.distance(&place), 1e3)),
             }));
             (told.at, told.phase, told.moving, told.force_n) = (now, phase, moving, 0.0);
         }

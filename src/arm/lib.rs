@@ -1,7 +1,8 @@
-//! The robot arms that carry out the robot's task policy: a timed arm, whose presses have a random duration, and a UR5
-//! in a physics simulation with a human hand beside it. The simulated UR5 needs the feature `physics`.
+//! The robot arms that carry out the robot's task policy: a timed arm, whose presses have a random duration, a UR5
+//! in a physics simulation with a human hand beside it, which needs the feature `physics`, and a real arm elsewhere.
 //!
-//! `worker` makes the robot's presses with either arm. The timed arm draws the duration of a press. The simulated UR5
+//! `worker` makes the robot's presses with any of them. Of a real arm, `real_arm` has what was reported last, and the order
+//! that its driver is to carry out. The timed arm draws the duration of a press. The simulated UR5
 //! has a controller at 125 Hz over the physics engine rapier, in steps of 2 ms near contacts and of 8 ms elsewhere.
 //! The path of the UR5 to a button is planned before the motion starts (up, across, down; cubic legs with a quintic
 //! time law) and checked against table, own links and obstacles. Slowing down only stretches the time along the
@@ -16,6 +17,7 @@
 
 #![deny(unsafe_code)]
 
+pub mod real_arm;
 pub mod worker;
 
 #[cfg(feature = "physics")]

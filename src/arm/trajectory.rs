@@ -22,7 +22,7 @@ pub(crate) const TIP_ACCELERATION_M_S2: f64 = 1.2;
 const QUINTIC_SPEED: f64 = 1.875;
 const QUINTIC_ACCELERATION: f64 = 5.7735;
 /// Depth below a button's top at which the arm's tip aims, in metres; this is more than the click needs.
-pub(crate) const BELOW_M: f64 = 0.006;
+pub const BELOW_M: f64 = 0.006;
 /// Number of points of a leg that are checked for joint limits and clearance.
 const LOOKS: usize = 24;
 /// Additional heights that are tried if the arm's path is blocked, in metres.
@@ -44,7 +44,7 @@ pub struct TrajectoryLeg {
     /// Four poses of the arm at equal distances along the leg.
     poses: [JointAngles; 4],
     /// Duration of the leg at full speed, in seconds.
-    pub(crate) takes_s: f64,
+    pub takes_s: f64,
 }
 
 impl TrajectoryLeg {
@@ -109,6 +109,11 @@ impl TrajectoryLeg {
         &self.poses[3]
     }
 
+    /// Four poses of the arm at equal distances along the leg, which is the cubic through them.
+    pub fn poses(&self) -> &[JointAngles; 4] {
+        &self.poses
+    }
+
     /// The first reason why the arm must not follow the leg; none if the arm may follow the leg.
     fn fault(&self, arm: &SerialArm, around: &ArmSurroundings) -> Option<UnreachableReason> {
         (0..=LOOKS).find_map(|look| arm.fault(&self.pose(look as f64 / LOOKS as f64), around))
@@ -125,22 +130,46 @@ pub(crate) fn way_to(
     to: &ButtonPoses,
     around: &ArmSurroundings,
 ) -> Result<Vec<TrajectoryLeg>, UnreachableReason> {
+    let mut legs = way_above(arm, from, &to.above, around)?;
+    legs.push(way_down(arm, &to.above, -BELOW_M, around)?);
+    Ok(legs)
+}
+
+/// The trajectory from a pose to another one above the buttons: up, if the arm is lower, and across.
+///
+/// # Errors
+/// What blocks the arm's path, after higher paths were tried.
+pub fn way_above(
+    arm: &SerialArm,
+    from: &JointAngles,
+    above: &JointAngles,
+    around: &ArmSurroundings,
+) -> Result<Vec<TrajectoryLeg>, UnreachableReason> {
     let mut legs = way_up(arm, from, around)?;
     let here = legs.last().map_or(*from, |leg| *leg.end());
-    legs.extend(way_over(arm, &here, &to.above, around)?);
-    let down = TrajectoryLeg::straight(arm, LegKind::Down, &to.above, around.table_m + BUTTON_M - BELOW_M, around)?;
-    match down.fault(arm, around) {
-        None => legs.push(down),
-        Some(fault) => return Err(fault),
-    }
+    legs.extend(way_over(arm, &here, above, around)?);
     Ok(legs)
+}
+
+/// The straight leg from a pose above a button down to this height of the tip over the button's top, in metres.
+///
+/// # Errors
+/// What blocks the arm's path.
+pub fn way_down(
+    arm: &SerialArm,
+    from: &JointAngles,
+    over_top_m: f64,
+    around: &ArmSurroundings,
+) -> Result<TrajectoryLeg, UnreachableReason> {
+    let down = TrajectoryLeg::straight(arm, LegKind::Down, from, around.table_m + BUTTON_M + over_top_m, around)?;
+    down.fault(arm, around).map_or(Ok(down), Err)
 }
 
 /// The trajectory up to the height at which the arm moves between buttons, if the arm is lower.
 ///
 /// # Errors
 /// What blocks the arm's path.
-pub(crate) fn way_up(
+pub fn way_up(
     arm: &SerialArm,
     from: &JointAngles,
     around: &ArmSurroundings,

@@ -1,6 +1,6 @@
 //! Carries out the robot's task policy with presses that take time. The duration of a press is drawn at random (timed
-//! arm) or results from the simulated arm. This module knows neither events nor clocks: the caller passes time and
-//! state.
+//! arm), results from the simulated arm, or is that of a real arm, which reports what it does. This module knows neither
+//! events nor clocks: the caller passes time and state.
 
 use rand_distr::{Distribution, LogNormal};
 use tomcom_core::base::rng::{Stream, stream};
@@ -8,9 +8,10 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::{CostToGo, Fidelity};
 use tomcom_core::kitchen::{Agent, ButtonId, Kitchen, State};
 use tomcom_core::robot::policy::PolicyDecision;
-use tomcom_core::robot::{AbortReason, IdleReason, RobotEvent, policy};
+use tomcom_core::robot::{AbortReason, ArmPhase, IdleReason, RobotEvent, SafetyMode, policy};
 
 use crate::body::SimulatedArm;
+use crate::real_arm::{ArmOrder, RealArm};
 
 #[cfg(feature = "physics")]
 use super::controller::ArmController;
@@ -41,6 +42,40 @@ struct Idleness {
     is_passive: bool,
 }
 
+/// What presses the buttons.
+#[derive(Clone, Debug)]
+enum ArmBody {
+    /// Nothing: presses take a random time.
+    Timed,
+    Simulated(Box<SimulatedArm>),
+    Real(RealArm),
+}
+
+impl ArmBody {
+    fn simulated(&mut self) -> Option<&mut SimulatedArm> {
+        match self {
+            ArmBody::Simulated(body) => Some(body),
+            ArmBody::Timed | ArmBody::Real(_) => None,
+        }
+    }
+
+    fn give_up(&mut self) {
+        match self {
+            ArmBody::Timed => {}
+            ArmBody::Simulated(body) => body.give_up(),
+            ArmBody::Real(arm) => arm.give_up(),
+        }
+    }
+
+    /// Whether it can begin a press.
+    fn is_able(&self) -> bool {
+        match self {
+            ArmBody::Real(arm) => arm.is_able(),
+            ArmBody::Timed | ArmBody::Simulated(_) => true,
+        }
+    }
+}
+
 /// The robot at work: it decides on presses and carries them out with its arm; the robot can be idle, held or stopped.
 #[derive(Clone, Debug)]
 pub struct RobotTaskExecutor {
@@ -60,8 +95,9 @@ pub struct RobotTaskExecutor {
     initiative: SessionTime,
     /// The time from which the human counts as passive if the human does not press before.
     passive_from: SessionTime,
-    /// The simulated arm in the physics; none for the timed arm.
-    body: Option<Box<SimulatedArm>>,
+    body: ArmBody,
+    /// Expected duration of a press of a real arm, in seconds.
+    press_s: f64,
 }
 
 impl RobotTaskExecutor {
@@ -83,17 +119,22 @@ impl RobotTaskExecutor {
             idle: None,
             initiative,
             passive_from: initiative,
-            body: None,
+            body: ArmBody::Timed,
+            press_s,
         }
     }
 
     pub fn with_body(self, body: SimulatedArm) -> RobotTaskExecutor {
-        RobotTaskExecutor { body: Some(Box::new(body)), ..self }
+        RobotTaskExecutor { body: ArmBody::Simulated(Box::new(body)), ..self }
+    }
+
+    pub fn with_real_arm(self) -> RobotTaskExecutor {
+        RobotTaskExecutor { body: ArmBody::Real(RealArm::default()), ..self }
     }
 
     #[cfg(feature = "physics")]
     pub fn arm(&mut self) -> Option<&mut ArmController> {
-        self.body.as_mut().map(|body| &mut body.arm)
+        self.body.simulated().map(|body| &mut body.arm)
     }
 
     /// The time of the robot's next action: a touch of the button, a controller cycle, or a new decision after a
@@ -108,9 +149,9 @@ impl RobotTaskExecutor {
             IdleReason::NoOrder => None,
         });
         let moves = match (&self.body, self.busy) {
-            (Some(body), _) => body.next_due(!self.waits()),
-            (None, Some(ongoing)) => (!self.held || ongoing.driven).then_some(ongoing.until),
-            (None, None) => None,
+            (ArmBody::Simulated(body), _) => body.next_due(!self.waits()),
+            (ArmBody::Timed, Some(ongoing)) => (!self.held || ongoing.driven).then_some(ongoing.until),
+            (ArmBody::Timed, None) | (ArmBody::Real(_), _) => None,
         };
         again.into_iter().chain(moves).min()
     }
@@ -120,7 +161,8 @@ impl RobotTaskExecutor {
     }
 
     /// Starts the press that the wizard chose; otherwise decides on a press if the arm is free and the state changed
-    /// since the last decision.
+    /// since the last decision. Of a real arm, also decides whether the ongoing press is still useful where that is to be
+    /// asked.
     pub fn decide(
         &mut self,
         kitchen: &Kitchen,
@@ -128,7 +170,19 @@ impl RobotTaskExecutor {
         now: SessionTime,
         state: State,
     ) -> Option<RobotEvent> {
-        if self.stopped || self.busy.is_some() {
+        if let Some(ongoing) = self.busy {
+            let may_press = !self.waits();
+            let ArmBody::Real(arm) = &mut self.body else { return None };
+            if !arm.asks(may_press, state) {
+                return None;
+            }
+            if ongoing.is_useful(kitchen, cost, state, now >= self.passive_from) {
+                arm.go_for_it(state);
+                return None;
+            }
+            return self.give_up(AbortReason::NoLongerUseful);
+        }
+        if self.stopped || !self.body.is_able() {
             return None;
         }
         if let Some(button) = self.driven.take() {
@@ -147,7 +201,7 @@ impl RobotTaskExecutor {
         match policy::decide(kitchen, cost, state, is_passive, &skipped, &mut self.random) {
             PolicyDecision::Press(button) => Some(self.set_out(now, button, false)),
             PolicyDecision::Idle(reason) => {
-                if let Some(body) = &mut self.body {
+                if let Some(body) = self.body.simulated() {
                     body.has_nothing_to_do();
                 }
                 let waits_for = match reason {
@@ -170,8 +224,12 @@ impl RobotTaskExecutor {
 
     fn set_out(&mut self, now: SessionTime, button: ButtonId, driven: bool) -> RobotEvent {
         let takes_s = match &mut self.body {
-            None => self.duration_s.sample(&mut self.random),
-            Some(body) => match body.set_out(now, button) {
+            ArmBody::Timed => self.duration_s.sample(&mut self.random),
+            ArmBody::Real(arm) => {
+                arm.set_out(button);
+                self.press_s
+            }
+            ArmBody::Simulated(body) => match body.set_out(now, button) {
                 Ok(takes_s) => takes_s,
                 Err(why) => {
                     self.leave_out(now, button);
@@ -188,8 +246,11 @@ impl RobotTaskExecutor {
     /// Carries out the robot's action that is due: a touch of the timed arm, or a cycle of the simulated arm.
     pub fn act(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, now: SessionTime, state: State) -> Vec<RobotEvent> {
         let (may_press, is_passive) = (!self.waits(), self.is_passive(now));
-        let Some(body) = &mut self.body else {
-            return self.touch(kitchen, cost, state, is_passive).into_iter().collect();
+        let body = match &mut self.body {
+            ArmBody::Simulated(body) => body,
+            ArmBody::Timed => return self.touch(kitchen, cost, state, is_passive).into_iter().collect(),
+            // Only a new decision is due, which follows.
+            ArmBody::Real(_) => return Vec::new(),
         };
         let mut events = Vec::new();
         // Only a new decision is due, which follows; an arm whose cycle is not due would move too fast.
@@ -275,15 +336,13 @@ impl RobotTaskExecutor {
 
     fn give_up(&mut self, reason: AbortReason) -> Option<RobotEvent> {
         let ongoing = self.busy.take()?;
-        if let Some(body) = &mut self.body {
-            body.give_up();
-        }
+        self.body.give_up();
         Some(RobotEvent::Abort(ongoing.button, reason))
     }
 
     /// Stops the robot at the wizard's command; the present press is abandoned.
     pub fn stop(&mut self) -> Vec<RobotEvent> {
-        let safety = self.body.as_mut().and_then(|body| body.stop());
+        let safety = self.body.simulated().and_then(|body| body.stop());
         let given_up = self.halt(AbortReason::Stopped);
         safety.into_iter().chain(given_up).collect()
     }
@@ -310,13 +369,53 @@ impl RobotTaskExecutor {
 
     pub fn resume(&mut self, now: SessionTime) -> Option<RobotEvent> {
         self.stopped = false;
-        self.body.as_mut()?.resume(now)
+        self.body.simulated()?.resume(now)
+    }
+
+    /// The order for the driver of a real arm; `None` for other arms.
+    pub fn order(&self) -> Option<ArmOrder> {
+        match &self.body {
+            ArmBody::Real(arm) => Some(arm.order(self.stopped)),
+            ArmBody::Timed | ArmBody::Simulated(_) => None,
+        }
+    }
+
+    /// A real arm says in which phase of its motion it is.
+    pub fn arm_moves(&mut self, phase: ArmPhase) {
+        if let ArmBody::Real(arm) = &mut self.body {
+            arm.moves(phase);
+        }
+    }
+
+    /// A real arm says whether it takes orders, and its safety mode; `stopped` says that the robot is stopped by now.
+    pub fn arm_changes(&mut self, is_ready: bool, mode: SafetyMode, stopped: bool) -> Option<RobotEvent> {
+        let ArmBody::Real(arm) = &mut self.body else { return None };
+        arm.changes(is_ready, mode);
+        let halts = stopped && !self.stopped;
+        if halts { self.halt(AbortReason::Stopped) } else { None }
+    }
+
+    /// A button clicked under a real arm.
+    pub fn arm_pressed(&mut self, button: ButtonId) {
+        if let ArmBody::Real(arm) = &mut self.body
+            && self.busy.take_if(|ongoing| ongoing.button == button).is_some()
+        {
+            arm.give_up();
+        }
+    }
+
+    /// A real arm could not press the button.
+    pub fn arm_failed(&mut self, now: SessionTime, button: ButtonId) {
+        if matches!(self.body, ArmBody::Real(_)) {
+            self.arm_pressed(button);
+            self.leave_out(now, button);
+        }
     }
 
     /// Tells the simulated hand that the person intends to press the button at this position on the table (metres) at
     /// the time `at`, as far as the time is known now.
     pub fn human_means(&mut self, now: SessionTime, button_m: [f64; 2], at: SessionTime) {
-        if let Some(body) = &mut self.body {
+        if let Some(body) = self.body.simulated() {
             body.human_means(now, button_m, at);
         }
     }
@@ -329,13 +428,16 @@ impl RobotTaskExecutor {
     /// (metres).
     pub fn human_pressed(&mut self, now: SessionTime, button_m: [f64; 2]) {
         self.passive_from = now + self.initiative;
-        if let Some(body) = &mut self.body {
+        if let Some(body) = self.body.simulated() {
             body.human_pressed(now, button_m);
         }
     }
 
     pub fn rest(&mut self) {
         self.busy = None;
+        if let ArmBody::Real(arm) = &mut self.body {
+            arm.give_up();
+        }
         self.idle = None;
         self.driven = None;
         self.skipped.clear();
@@ -349,7 +451,7 @@ impl RobotTaskExecutor {
             *until = *until + by;
         }
         self.passive_from = self.passive_from + by;
-        if let Some(body) = &mut self.body {
+        if let Some(body) = self.body.simulated() {
             body.postpone(by);
         }
     }

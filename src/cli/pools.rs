@@ -12,8 +12,7 @@ use crate::run::files::read_session;
 use crate::run::picture_file::{check_picture, write_picture};
 use tomcom_core::base::text::count;
 use tomcom_session::files::SessionSetup;
-use tomcom_session::files::file_error::FileError;
-use tomcom_session::headless::SimulationShard;
+use tomcom_session::headless::{self, SimulationShard};
 use tomcom_session::settings::ArmKind;
 use tomcom_study::drawn_study::DrawnEffect;
 use tomcom_study::files::pool_file;
@@ -123,7 +122,7 @@ impl PoolArgs {
         tell_carried(&self.plan, None);
         let spec = &mut files.spec;
         spec.robot.arm = self.arm.map_or(spec.robot.arm, ArmKind::from);
-        spec.require_built().map_err(|missing| FileError::not_built(&self.plan, missing))?;
+        headless::require(spec, &self.plan)?;
         let pool = match self.from.is_empty() {
             false => self.read(files)?,
             true => {

@@ -12,7 +12,7 @@ use tomcom_core::communication::settings::ShadowMode;
 use tomcom_people::wizard::WizardKind;
 use tomcom_session::SessionSpec;
 use tomcom_session::features::Feature;
-use tomcom_session::files::file_error::FileError;
+use tomcom_session::headless;
 use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
 use tomcom_session::study_arm::StudyArm;
 
@@ -60,7 +60,7 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
         files.spec.assistant.concept = concept.clone();
     }
     files.spec.robot.arm = args.arm.map_or(files.spec.robot.arm, ArmKind::from);
-    files.spec.require_built().map_err(|missing| FileError::not_built(&args.session, missing))?;
+    headless::require(&files.spec, &args.session)?;
     files.spec.assistant.shadow = if args.shadow { ShadowMode::On } else { ShadowMode::Off };
     let simulation = simulate::SimulationRequest { files, trials, shard: args.shard, out: args.out.clone() };
     let bar = progress(simulation.own_trials().count() as u64, "trials");

@@ -12,8 +12,7 @@ use crate::run::picture_file::{check_picture, write_picture};
 use crate::run::tournament::{self, TournamentRequest};
 use tomcom_core::communication::settings::ConceptSpec;
 use tomcom_session::external::SCHEMA;
-use tomcom_session::files::file_error::FileError;
-use tomcom_session::headless::SimulationShard;
+use tomcom_session::headless::{self, SimulationShard};
 use tomcom_session::settings::{ArmKind, GazeSource, ParticipantKind};
 use tomcom_study::charts;
 use tomcom_study::files::tournament_files::{check_table, write_table};
@@ -89,7 +88,7 @@ pub(super) fn tournament(args: &TournamentArgs) -> Result<(), Failure> {
     }
     files.spec.seed = args.seed.unwrap_or(files.spec.seed);
     files.spec.robot.arm = args.arm.map_or(files.spec.robot.arm, ArmKind::from);
-    files.spec.require_built().map_err(|missing| FileError::not_built(&args.session, missing))?;
+    headless::require(&files.spec, &args.session)?;
     let (concepts, trials, shard, out) = (args.concepts.clone(), args.trials, args.shard, args.out.clone());
     let request = TournamentRequest { files, concepts, trials, shard, out };
     if let Some(concept) = request.twice() {

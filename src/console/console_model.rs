@@ -137,6 +137,8 @@ pub struct ConsoleModel {
     pub viewers: Option<RerunStreamStatus>,
     pub lsl: Option<LslStatus>,
     pub films: Option<FilmStatus>,
+    /// The checks of a real arm and its controller.
+    pub arm: Vec<PreflightCheck>,
     /// Free disk space of the recording's folder in bytes; `None` if unknown.
     pub free_bytes: Option<u64>,
     /// Panel that is shown alone at full size.
@@ -223,6 +225,7 @@ impl ConsoleModel {
             viewers: None,
             lsl: None,
             films: None,
+            arm: Vec::new(),
             free_bytes: None,
             alone: None,
             focus: None,

@@ -40,6 +40,13 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: ManualAct
         }
         ManualAction::DriveRobot if session.robot.stopped => refuse(model, "the robot is stopped: resume it first"),
         ManualAction::DriveRobot => ask(model, PickerKind::Button),
+        ManualAction::ConfirmArm => match session.robot.arm.stage {
+            Some((stage, _)) => {
+                let words = format!("confirmed: {}", stage.asks().unwrap_or("nothing"));
+                send(model, session, Event::RobotConfirmed { stage }, NoticeLevel::Done, &words)
+            }
+            None => refuse(model, "the arm's controller has not answered yet"),
+        },
         ManualAction::Abort if !matches!(session.phase, TrialPhase::Running | TrialPhase::Paused) => {
             refuse(model, "no trial runs that could be aborted")
         }

@@ -48,6 +48,7 @@ pub enum ManualAction {
     HoldRobot,
     SkipPress,
     DriveRobot,
+    ConfirmArm,
     Abort,
     Redo,
     Preflight,

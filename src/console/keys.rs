@@ -52,6 +52,7 @@ impl KeyBindings {
             KeyAction::Move(_) => false,
             KeyAction::Note(index) => *index < spec.console.notes.len(),
             KeyAction::Manual(ManualAction::AskProbe | ManualAction::SkipProbe) => spec.probes.is_some(),
+            KeyAction::Manual(ManualAction::ConfirmArm) => spec.robot.arm.is_real(),
             _ => line.section != KeyFileTable::Replay,
         });
         bindings.retain(|line| !line.chords.is_empty());

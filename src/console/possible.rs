@@ -56,7 +56,7 @@ pub(super) fn acts_on_sheet(session: &Session, action: &KeyAction) -> bool {
                 | KeyAction::Quit
                 | KeyAction::StopRobot
                 | KeyAction::ResumeRobot
-                | KeyAction::Manual(ManualAction::Calibrate)
+                | KeyAction::Manual(ManualAction::Calibrate | ManualAction::ConfirmArm)
         )
 }
 
@@ -73,7 +73,7 @@ fn reaches(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool 
         Some(Dialog::Report(_)) => false,
         Some(Dialog::Preflight) => match action {
             KeyAction::Advance => preflight::all_ok(&preflight::checks(session, model)),
-            KeyAction::ResumeRobot | KeyAction::Manual(ManualAction::HoldRobot) => true,
+            KeyAction::ResumeRobot | KeyAction::Manual(ManualAction::HoldRobot | ManualAction::ConfirmArm) => true,
             KeyAction::Quit => has_control(),
             _ => stops,
         },
@@ -137,6 +137,10 @@ fn intervenes(session: &Session, action: ManualAction) -> bool {
         ManualAction::HoldRobot => phase != TrialPhase::Closed,
         ManualAction::SkipPress => admits(Event::RobotSkipped { by }),
         ManualAction::DriveRobot => session.is_running() && !session.robot.stopped,
+        ManualAction::ConfirmArm => {
+            let stage = session.robot.arm.stage.as_ref().map(|(stage, _)| *stage);
+            stage.is_some_and(|stage| admits(Event::RobotConfirmed { stage }))
+        }
         ManualAction::Redo => can_redo(session),
         ManualAction::Preflight => phase == TrialPhase::Ready,
         ManualAction::Calibrate => admits(Event::Calibration(GazeCheckEvent::begin())),

@@ -14,10 +14,12 @@ use super::key_action::{KeyAction, ManualAction};
 use super::probe_keys::{ProbeAnswerer, answerer};
 use tomcom_core::base::text::count;
 use tomcom_core::base::time::SessionTime;
+use tomcom_core::robot::ArmStage;
 use tomcom_session::admit::admit;
+use tomcom_session::history::event_words;
 use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict, participant, recorded_gaze, space};
 use tomcom_session::probes::of_trial;
-use tomcom_session::settings::{GazeSource, ParticipantKind};
+use tomcom_session::settings::{ArmKind, GazeSource, ParticipantKind};
 use tomcom_session::{Event, Session};
 
 /// The key that overrides failed preflight checks and starts the trial.
@@ -35,6 +37,7 @@ pub fn checks(session: &Session, model: &ConsoleModel) -> Vec<PreflightCheck> {
     checks.extend(model.display.as_ref().map(|display| display.check(session.spec.participant.gaze)));
     checks.extend(model.observers.as_ref().map(ObserverStatus::check));
     checks.extend(probes(session, model));
+    checks.extend(model.arm.iter().cloned());
     checks.extend([robot(session, model), recording(model), space(model.free_bytes), keyboard(model)]);
     checks.extend(model.films.as_ref().map(|films| films.check.clone()));
     checks.extend(model.viewers.as_ref().map(viewers));
@@ -50,7 +53,34 @@ fn key(model: &ConsoleModel, action: &KeyAction) -> String {
     model.keys.chord_for(action).map(|key| key.to_string()).unwrap_or_default()
 }
 
+/// What the wizard does about the stage in which a real arm is.
+fn arm_remedy(model: &ConsoleModel, stage: ArmStage) -> String {
+    match stage.asks() {
+        Some(what) => format!("{} {what}", key(model, &KeyAction::Manual(ManualAction::ConfirmArm))),
+        None if stage == ArmStage::Lost => "switch the controller on, and look at cable and address".to_string(),
+        None => "wait; space stops the arm".to_string(),
+    }
+}
+
+/// Preflight check of how far a real arm is; `None` if it is ready, or is no real one.
+fn arm_stage(session: &Session, model: &ConsoleModel) -> Option<PreflightCheck> {
+    let failed = |found: String, remedy| Some(PreflightCheck::new("robot", PreflightVerdict::Failed, found, remedy));
+    match (session.spec.robot.arm, &session.robot.arm.stage) {
+        (ArmKind::Ur(_), Some((ArmStage::Ready, _))) => None,
+        (ArmKind::Ur(_), Some((stage, found))) => {
+            failed(format!("arm: {}", event_words::arm_stage(*stage, found)), arm_remedy(model, *stage))
+        }
+        (ArmKind::Ur(address), None) => {
+            failed(format!("the arm's controller at {address} has not answered yet"), arm_remedy(model, ArmStage::Lost))
+        }
+        (ArmKind::Timed | ArmKind::Physics, _) => None,
+    }
+}
+
 fn robot(session: &Session, model: &ConsoleModel) -> PreflightCheck {
+    if let Some(check) = arm_stage(session, model) {
+        return check;
+    }
     match (session.robot.stopped, session.robot.held) {
         (true, _) => {
             let resume = key(model, &KeyAction::ResumeRobot);
@@ -201,8 +231,8 @@ pub(super) fn answer(
         }
         // Keys that fix a problem also work in the list of preflight checks.
         (_, Some(KeyAction::ResumeRobot)) => super::actions::resume_robot(model, session),
-        (_, Some(KeyAction::Manual(ManualAction::HoldRobot))) if is_press => {
-            super::interventions::act(model, session, ManualAction::HoldRobot)
+        (_, Some(KeyAction::Manual(repair @ (ManualAction::HoldRobot | ManualAction::ConfirmArm)))) if is_press => {
+            super::interventions::act(model, session, repair)
         }
         (_, Some(KeyAction::Advance)) if is_press && is_ok => go(model, session, false),
         // If the problem has been fixed in the meantime, the start does not count as an override.

@@ -83,6 +83,7 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
         manual("hold_robot", 'p', ManualAction::HoldRobot, ROBOT, "hold the robot, or release it"),
         manual("skip_press", 's', ManualAction::SkipPress, ROBOT, "skip the robot's present press"),
         manual("drive_robot", 'd', ManualAction::DriveRobot, ROBOT, "choose the robot's next press"),
+        manual("confirm_arm", 'y', ManualAction::ConfirmArm, ROBOT, "confirm the next step of the real arm's set-up"),
         line(
             "start_pause",
             &[KeyChord::char('.')],

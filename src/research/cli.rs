@@ -16,7 +16,7 @@ use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::settings::ConceptSpec;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::files::{overwrite, read_session};
-use tomcom_session::headless::SimulationShard;
+use tomcom_session::headless::{self, SimulationShard};
 use tomcom_session::log::RecordingError;
 use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
 use tomcom_study::files::simulated_trials::SimulationRequest;
@@ -367,7 +367,7 @@ fn robustness(args: &RobustnessArgs) -> Result<(), Failure> {
     battery.cohorts.retain(|cohort| args.cohort.is_empty() || args.cohort.contains(cohort.name.get_ref()));
     let spec = &mut battery.session.spec;
     spec.robot.arm = args.arm.map_or(spec.robot.arm, ArmKind::from);
-    spec.require_built().map_err(|missing| FileError::not_built(&args.battery, missing))?;
+    headless::require(spec, &args.battery)?;
     let seed = args.seed.unwrap_or(spec.seed);
     let choose_seed = args.choose_seed.unwrap_or(seed.wrapping_add(1));
     if seed == choose_seed {
@@ -423,7 +423,7 @@ fn sweep(args: SweepArgs) -> Result<(), Failure> {
     }
     spec.assistant.concept = args.concept.map_or(spec.assistant.concept.clone(), ConceptSpec::from);
     spec.robot.arm = args.arm.map_or(spec.robot.arm, ArmKind::from);
-    spec.require_built().map_err(|missing| FileError::not_built(&args.session, missing))?;
+    headless::require(spec, &args.session)?;
     let simulation = SimulationRequest { files, trials: args.trials, shard: args.shard, out: args.out };
     let bar = progress(sweep::trials(&simulation, &args.sweep), "trials");
     let found = sweep::sweep(&simulation, &args.sweep, || bar.inc(1))?;

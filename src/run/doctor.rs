@@ -70,6 +70,8 @@ pub fn examine(spec: &SessionSpec, kitchen: &Kitchen, out: &Path) -> DoctorRepor
     add("for parts that this program was built without", left_out().collect());
     add("for the Lab Streaming Layer", devices::lsl(spec).into_iter().collect());
     add("for gaze", devices::gaze(spec, kitchen));
+    #[cfg(feature = "ur")]
+    add("for the arm", devices::arm(spec, kitchen));
     let healthy = checks.iter().all(|one| one.check.verdict != PreflightVerdict::Failed);
     DoctorReport { healthy, checks }
 }

@@ -55,6 +55,10 @@ pub enum LiveError {
         /// Why the operating system could not open the server's address.
         reason: io::Error,
     },
+    /// The driver of a real arm cannot be started.
+    #[error("the driver of the arm cannot be started: {0}")]
+    #[diagnostic(help("end other programs, and start tomcom again"))]
+    Arm(io::Error),
     /// The observers' page cannot be served.
     #[error("the address {at} for observers cannot be opened: {reason}")]
     #[diagnostic(help("give another port, or an address of this computer, as in --observe=127.0.0.1:50024"))]

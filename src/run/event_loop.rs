@@ -9,7 +9,7 @@ use tokio::time::{Instant, Interval, MissedTickBehavior, interval, sleep_until};
 
 use super::assistant_link::AssistantNews;
 use super::error::TerminalError;
-use super::operator_station::{OperatorStation, PageInput, Remark};
+use super::operator_station::{ArmNews, OperatorStation, PageInput, Remark};
 use crate::console::lists::RecordingPicker;
 use crate::console::lists::StartPrompt;
 use crate::console::view::theme::Theme;
@@ -42,6 +42,8 @@ pub(super) enum LoopEvent {
     TargetDue,
     /// An input from the participant's page.
     Page(PageInput),
+    /// News of a real arm.
+    Arm(ArmNews),
     Advice(AssistantNews),
     /// An observer's remark. A shell that records nothing drops it, which tells the observer so.
     Remark(Remark),
@@ -187,6 +189,7 @@ async fn next_event<S: ConsoleShell>(shell: &mut S, station: &mut OperatorStatio
         () = until(due.engine) => LoopEvent::EngineDue,
         () = until(due.target) => LoopEvent::TargetDue,
         Some(input) = station.display.next() => LoopEvent::Page(input),
+        Some(news) = station.arm.next() => LoopEvent::Arm(news),
         Some(advice) = shell.advice() => LoopEvent::Advice(advice),
         Some(remark) = station.observers.next() => LoopEvent::Remark(remark),
         _ = ticks.pointer.tick(), if with_pointer => LoopEvent::PointerTick,

@@ -1,4 +1,4 @@
-//! The operator's station: terminal, eye tracker, the participant's display, and termination signals. The station is opened
+//! The operator's station: terminal, eye tracker, the participant's display, a real arm, and termination signals. The station is opened
 //! once for all recordings of a participant's series.
 
 use std::io;
@@ -37,6 +37,11 @@ const CONTINUED: Duration = Duration::from_millis(200);
 /// Longest wait for the program Pupil Capture to finish its last request.
 const LAST_REQUEST: Duration = Duration::from_secs(2);
 
+#[cfg(feature = "ur")]
+mod station_arm;
+#[cfg(not(feature = "ur"))]
+#[path = "operator_station/without_arm.rs"]
+mod station_arm;
 #[cfg(feature = "display")]
 mod station_display;
 #[cfg(not(feature = "display"))]
@@ -48,6 +53,8 @@ mod station_observers;
 mod lsl_output;
 
 use lsl_output::LslOutput;
+use station_arm::StationArm;
+pub(super) use station_arm::{ArmNews, ArmOrders};
 use station_display::StationDisplay;
 pub(super) use station_display::{PageInput, lost_since, take_consent_input};
 #[cfg(not(feature = "display"))]
@@ -64,6 +71,7 @@ pub(super) struct OperatorStation {
     pub tracker: GazeTracker,
     pub display: StationDisplay,
     pub observers: StationObservers,
+    pub arm: StationArm,
     pub lsl: LslOutput,
     /// Films of recordings that are over.
     pub films: RecordedFilms,
@@ -123,7 +131,9 @@ impl OperatorStation {
         let tracker = GazeTracker::open(spec, kitchen, &lsl).await?;
         let display = StationDisplay::open(spec).await?;
         let observers = StationObservers::open(observe).await?;
-        Ok(OperatorStation { tracker, display, observers, lsl, ..OperatorStation::without_devices(&spec.console)? })
+        let arm = StationArm::open(spec, kitchen)?;
+        let bare = OperatorStation::without_devices(&spec.console)?;
+        Ok(OperatorStation { tracker, display, observers, arm, lsl, ..bare })
     }
 
     /// Takes over the terminal, without devices.
@@ -137,8 +147,8 @@ impl OperatorStation {
         let jobs = JobControl::start().map_err(TerminalError)?;
         let input = OperatorInput { terminal, jobs, end: Box::pin(asked_to_end()) };
         let (tracker, display, lsl) = (GazeTracker::default(), StationDisplay::default(), LslOutput::default());
-        let observers = StationObservers::default();
-        Ok(OperatorStation { screen, theme, input, tracker, display, observers, lsl, films: RecordedFilms::default() })
+        let (observers, arm, films) = (StationObservers::default(), StationArm::default(), RecordedFilms::default());
+        Ok(OperatorStation { screen, theme, input, tracker, display, observers, arm, lsl, films })
     }
 
     /// Draws this in the terminal, and shows it to the observers.

@@ -4,12 +4,13 @@
 use crate::event::{SignalEndReason, TrialEndReason};
 use crate::probes::{self, ProbeEvent};
 use crate::protocol::{self, ProtocolEvent};
-use crate::settings::{ArmKind, Condition, ParticipantKind};
+use crate::settings::{Condition, ParticipantKind};
 use crate::{Event, Session, TimelineEvent, TrialPhase, film, gaze_check, person_code, tracker};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::{self, Sender, Signal};
 use tomcom_core::kitchen::{Agent, ContentId, LocationKind};
+use tomcom_core::robot::ArmStage;
 
 /// What a precondition says: nothing, or the reason for which it does not hold.
 pub(crate) fn unless(holds: bool, reason: &'static str) -> Result<(), &'static str> {
@@ -56,8 +57,14 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
         Event::Tracker(event) => tracker::admit(event),
         Event::Film(event) => film::admit(event),
         Event::Calibration(event) => gaze_check::admit(session, event),
+        Event::RobotStage { .. } => unless(session.spec.robot.arm.is_real(), "the robot's arm is not a real one"),
+        Event::RobotConfirmed { stage } => {
+            let is_it = session.robot.arm.stage.as_ref().is_some_and(|(present, _)| present == stage);
+            unless(is_it && stage.asks().is_some(), "the arm asks for no confirmation")?;
+            refuse_if(phase == TrialPhase::Running && *stage != ArmStage::Off, "pause the trial first")
+        }
         Event::RobotMoves(_) | Event::RobotSafety { .. } | Event::RobotTouched { .. } => refuse_if(
-            session.spec.robot.arm == ArmKind::Timed,
+            !session.spec.robot.arm.has_joints(),
             "the robot's arm is timed in this session: it is not simulated physically",
         ),
         Event::RobotStopped => refuse_if(session.robot.is_stopped_by_wizard(), "the robot is stopped already"),
@@ -148,9 +155,9 @@ pub(crate) fn is_too_early(session: &Session, now: SessionTime) -> bool {
     last.is_some_and(|last| session.age(last.time, now).as_secs_f64() < pace_s)
 }
 
-/// Whether an event comes from outside (wizard, participant, tracker) rather than from the running session itself.
+/// Whether an event comes from outside (wizard, participant, tracker, a real arm) rather than from the running session itself.
 pub fn is_external(session: &Session, event: &Event) -> bool {
-    let participant = &session.spec.participant;
+    let (participant, is_real) = (&session.spec.participant, session.spec.robot.arm.is_real());
     match event {
         Event::TrialStarted
         | Event::TrialPaused
@@ -161,6 +168,8 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         | Event::RobotReleased { .. }
         | Event::RobotSkipped { .. }
         | Event::RobotDriven { .. }
+        | Event::RobotStage { .. }
+        | Event::RobotConfirmed { .. }
         | Event::KitchenCorrected { .. }
         | Event::TrialAborted { .. }
         | Event::TrialExcluded { .. }
@@ -192,16 +201,18 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         Event::SignalEnded { reason } => *reason == SignalEndReason::TakenBack,
         Event::ParticipantBelieves(_) => participant.kind != ParticipantKind::Simulated,
         Event::Gaze(_) => !participant.simulates_gaze(),
-        Event::Press { agent, .. } => *agent == Agent::Human && participant.kind != ParticipantKind::Simulated,
+        Event::Press { agent: Agent::Human, .. } => participant.kind != ParticipantKind::Simulated,
+        // A real arm reports what it does.
+        Event::Press { agent: Agent::Robot, .. }
+        | Event::RobotMoves(_)
+        | Event::RobotSafety { .. }
+        | Event::RobotTouched { .. } => is_real,
+        Event::RobotAborts { reason, .. } => is_real && reason.is_of_physics(),
         Event::OrderShown { .. }
         | Event::OrderCleared { .. }
         | Event::HumanWaits { .. }
         | Event::RobotIntends { .. }
-        | Event::RobotAborts { .. }
         | Event::RobotIdles { .. }
-        | Event::RobotMoves(_)
-        | Event::RobotSafety { .. }
-        | Event::RobotTouched { .. }
         | Event::OfferOpened(_)
         | Event::OfferClosed { .. }
         | Event::BeliefEstimated(_) => false,

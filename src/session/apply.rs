@@ -15,6 +15,7 @@ use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::kitchen::{
     Agent, ButtonAction, ButtonId, ContentId, DishId, KitchenChange, LocationId, OrderContent, Press, State,
 };
+use tomcom_core::robot::ArmStage;
 
 /// The session cannot accept an event: the log is damaged or was written by another program.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -95,6 +96,15 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
         Event::RobotMoves(_) | Event::RobotSafety { .. } | Event::RobotTouched { .. } => {
             change_arm(session, now, &stamped.event);
         }
+        Event::RobotStage { stage, found } => {
+            session.robot.arm.stage = Some((*stage, found.clone()));
+            let has_begun = matches!(session.phase, TrialPhase::Running | TrialPhase::Paused);
+            if *stage != ArmStage::Ready && has_begun && !session.robot.stopped {
+                session.robot.stopped = true;
+                session.robot.idle = None;
+                session.note_event(now, &stamped.event);
+            }
+        }
         Event::RobotStopped | Event::RobotResumed => {
             session.robot.stopped = stamped.event == Event::RobotStopped;
             session.robot.idle = None;
@@ -160,6 +170,7 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
         Event::Screen(_) => session.has_console = true,
         Event::HumanWaits { .. } => await_press(session, now, &mut effects),
         Event::Preflight { .. } | Event::Display(_) | Event::Film(_) | Event::SignalDrawn { .. } => {}
+        Event::RobotConfirmed { .. } => {}
         Event::ClockJumped { .. } | Event::ParticipantBelieves(_) | Event::BeliefEstimated(_) => {}
         Event::SessionEnded => close(session, now, &mut effects),
     }

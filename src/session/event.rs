@@ -25,6 +25,7 @@ use tomcom_core::kitchen::Agent;
 use tomcom_core::mind::RecordedBelief;
 use tomcom_core::mind::RecordedEstimate;
 use tomcom_core::robot::ArmSample;
+use tomcom_core::robot::ArmStage;
 use tomcom_core::robot::SafetyMode;
 use tomcom_core::robot::{AbortReason, IdleReason};
 
@@ -108,9 +109,9 @@ pub enum Event {
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         waits_for: Vec<String>,
     },
-    /// Witness: a sample of the simulated arm's motion, about 12 per second while it moves.
+    /// A sample of the motion of an arm with joints, about 12 per second while it moves; of the simulated arm a witness.
     RobotMoves(ArmSample),
-    /// Of the simulated arm. After a protective stop or a fault it does not move until the wizard resumes it.
+    /// Of an arm with joints. After a protective stop or a fault it does not move until the wizard resumes it.
     RobotSafety {
         mode: SafetyMode,
         /// Contact force, if it caused the change.
@@ -119,6 +120,16 @@ pub enum Event {
         /// Number of the faulty joint, from 1.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         joint: Option<u8>,
+    },
+    /// How far a real arm is with being set up; beside `ready` it makes no press.
+    RobotStage {
+        stage: ArmStage,
+        /// What was found, in words.
+        found: String,
+    },
+    /// The wizard confirms what a real arm asks for in this stage.
+    RobotConfirmed {
+        stage: ArmStage,
     },
     /// Witness: a contact between the simulated arm and the human, with its peak force; once per contact.
     RobotTouched {
@@ -252,6 +263,7 @@ impl Event {
             Event::Tracker(TrackerEvent::Connected { .. }) => &["device"],
             Event::Tracker(TrackerEvent::Lost { .. }) => &["reason"],
             Event::Film(FilmEvent::Lost { .. }) => &["reason"],
+            Event::RobotStage { .. } => &["found"],
             Event::Tracker(TrackerEvent::OtherSurfaces { .. }) => &["names"],
             Event::Tracker(TrackerEvent::SeveralStreams { .. }) => &["streams"],
             Event::Protocol(ProtocolEvent::ItemAnswered { .. }) => &["answer"],
@@ -341,6 +353,7 @@ pub const MEANINGS: &[(&str, &str)] = &[
     ("probe", "A freeze probe: the task stands still, and the participant is asked what it believes"),
     ("protocol", "A step of the study around the trial: consent, phases, tutorial, questionnaires"),
     ("robot_aborts", "The robot gave up its press"),
+    ("robot_confirmed", "The wizard confirmed a step in which the real arm is set up"),
     ("robot_driven", "Somebody chose the robot's next press"),
     ("robot_held", "Somebody holds the robot before its next press"),
     (
@@ -352,6 +365,7 @@ pub const MEANINGS: &[(&str, &str)] = &[
     ("robot_resumed", "The wizard lets the stopped robot go on"),
     ("robot_safety", "The safety mode of the arm changed"),
     ("robot_skipped", "Somebody skipped the robot's press"),
+    ("robot_stage", "How far the real arm is with being set up; it presses where it is ready"),
     ("robot_stopped", "The wizard stopped the robot"),
     ("robot_touched", "Somebody touched the arm"),
     ("screen", "What the wizard sees changed"),

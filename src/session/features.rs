@@ -11,10 +11,11 @@ pub enum Feature {
     Mcap,
     Physics,
     Rerun,
+    Ur,
 }
 
 impl Feature {
-    pub const ALL: [Feature; 4] = [Feature::Display, Feature::Mcap, Feature::Physics, Feature::Rerun];
+    pub const ALL: [Feature; 5] = [Feature::Display, Feature::Mcap, Feature::Physics, Feature::Rerun, Feature::Ur];
 
     /// Name in Cargo, whether this build has it, name in words, and what a build without it cannot do.
     const fn about(self) -> (&'static str, bool, &'static str, &'static str) {
@@ -35,6 +36,12 @@ impl Feature {
             Feature::Rerun => {
                 ("rerun", cfg!(feature = "rerun"), "Rerun", "no stream for Rerun's viewers is written or served")
             }
+            Feature::Ur => (
+                "ur",
+                cfg!(feature = "ur"),
+                "the real arm",
+                "neither a real arm can be driven nor the controller of one be simulated",
+            ),
         }
     }
 
@@ -70,17 +77,20 @@ impl MissingFeature {
 }
 
 impl SessionSpec {
-    /// Whether this build can run the session without a console.
+    /// Whether this build can run the session without a console, or read its recordings.
     pub const fn require_built(&self) -> Result<(), MissingFeature> {
         match self.robot.arm {
             ArmKind::Physics => Feature::Physics.require(),
-            ArmKind::Timed => Ok(()),
+            ArmKind::Timed | ArmKind::Ur(_) => Ok(()),
         }
     }
 
     /// Whether this build can run the session at the console.
     pub fn require_built_live(&self) -> Result<(), MissingFeature> {
         self.require_built()?;
+        if self.robot.arm.is_real() {
+            Feature::Ur.require()?;
+        }
         match self.participant.kind {
             ParticipantKind::Display => Feature::Display.require(),
             ParticipantKind::Keyboard | ParticipantKind::Simulated | ParticipantKind::External => Ok(()),

@@ -1,6 +1,7 @@
 //! Runs a session in virtual time as fast as possible, by jumping from one due event to the next; and the shards of a
 //! simulation.
 
+use std::path::Path;
 use std::str::FromStr;
 
 use crate::advisor::{AdviceRequest, Advisor};
@@ -9,8 +10,10 @@ use crate::external::concept::ConceptDialogue;
 use crate::external::link::{Exchange, WaitedMind};
 use crate::external::participant::ParticipantDialogue;
 use crate::external::{ExternalMinds, MindDialogue, NoMinds};
+use crate::files::file_error::{FileError, FileResult};
 use crate::protocol::ProtocolEvent;
-use crate::{Event, Session, TimestampedEvent, TrialPhase};
+use crate::settings::ArmKind;
+use crate::{Event, Session, SessionSpec, TimestampedEvent, TrialPhase};
 use tomcom_core::base::time::SessionTime;
 
 /// Time after which a simulated attendant resumes an arm that has stopped by itself.
@@ -33,6 +36,15 @@ impl SimulatedRobotOperator {
         }
         events
     }
+}
+
+/// Refuses the settings of a session file that no run without a console can have: a real arm, or what this build lacks.
+pub fn require(spec: &SessionSpec, file: &Path) -> FileResult<()> {
+    if let ArmKind::Ur(address) = spec.robot.arm {
+        let found = format!("arm = {{ ur = \"{address}\" }}: a real arm, in a run without a console");
+        return Err(FileError::from_finding(file, found, "--arm physics or --arm timed".to_string()));
+    }
+    spec.require_built().map_err(|missing| FileError::not_built(file, missing))
 }
 
 /// Computing time of a trial's assistant.

@@ -36,7 +36,7 @@ const LONGEST: &str = "no trial is longer than a day";
 /// The largest number of 32 bits: practically no limit.
 const COUNT: f64 = 4_294_967_295.0;
 
-const OF_TRIALS: [NumberRange; 52] = [
+const OF_TRIALS: [NumberRange; 53] = [
     NumberRange::whole(
         "seed",
         [0.0, 9_007_199_254_740_991.0],
@@ -60,6 +60,7 @@ const OF_TRIALS: [NumberRange; 52] = [
         SECONDS,
         "after the longest time the robot never takes the initiative, since no trial is longer",
     ),
+    NumberRange::real("robot.speed", [0.05, 1.0], "of the full speed", "a slower arm takes minutes for a press"),
     NumberRange::real(
         "signals.shown_s",
         [0.1, 3_600.0],

@@ -21,6 +21,7 @@ use tomcom_core::kitchen::rules::NoEffectReason;
 use tomcom_core::kitchen::state::MAX_LOCATIONS;
 use tomcom_core::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, State};
 use tomcom_core::robot::ArmSample;
+use tomcom_core::robot::ArmStage;
 use tomcom_core::robot::SafetyMode;
 use tomcom_core::robot::{AbortReason, IdleReason};
 use tomcom_people::wizard::WizardKind;
@@ -347,12 +348,24 @@ pub struct ArmStatus {
     pub mode: SafetyMode,
     /// Contact force that caused a protective stop.
     pub stopped_by_n: Option<f64>,
+    /// Of a real arm: how far it is with being set up, and what was found.
+    pub stage: Option<(ArmStage, String)>,
+}
+
+impl ArmStatus {
+    /// In which stage beside `ready` a real arm is, and what was found; `None` if it is ready, or is no real one.
+    pub fn unready(&self) -> Option<(ArmStage, &str)> {
+        self.stage
+            .as_ref()
+            .filter(|(stage, _)| *stage != ArmStage::Ready)
+            .map(|(stage, found)| (*stage, found.as_str()))
+    }
 }
 
 impl RobotStatus {
     /// Also possible after a protective stop.
     pub fn is_stopped_by_wizard(&self) -> bool {
-        self.stopped && !self.arm.mode.has_stopped_itself()
+        self.stopped && !self.arm.mode.has_stopped_itself() && self.arm.unready().is_none()
     }
 
     /// As screens name it: a stop by the wizard is an emergency stop also of the timed arm, which has no safety modes

@@ -589,11 +589,22 @@ pub enum ArmKind {
     Timed,
     /// A simulated UR5 presses buttons by contact; it slows near the human's hand and stops on contact with it.
     Physics,
+    /// A real UR5, whose controller is at this address; in files `{ ur = "192.168.1.10" }`.
+    Ur(IpAddr),
 }
 
 impl ArmKind {
     pub fn name(self) -> &'static str {
         self.into()
+    }
+
+    /// Whether it has joints and touches what it presses, simulated or real.
+    pub fn has_joints(self) -> bool {
+        self != ArmKind::Timed
+    }
+
+    pub fn is_real(self) -> bool {
+        matches!(self, ArmKind::Ur(_))
     }
 }
 
@@ -601,16 +612,24 @@ impl ArmKind {
 #[serde(deny_unknown_fields, default)]
 pub struct RobotSpec {
     pub arm: ArmKind,
-    /// Timed arm: median duration of a press.
+    /// Timed arm: median duration of a press. Real arm: what is expected of it.
     pub press_s: f64,
     /// Timed arm: standard deviation of the logarithm of a press's duration.
     pub press_spread: f64,
     /// Time without a press of the human after which the robot takes the initiative.
     pub initiative_s: f64,
+    /// Real arm: the share of its full speed with which it moves; `None` is [`RobotSpec::SPEED`].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed: Option<f64>,
+}
+
+impl RobotSpec {
+    /// Share of a real arm's full speed, unless the session says another.
+    pub const SPEED: f64 = 0.5;
 }
 
 impl Default for RobotSpec {
     fn default() -> Self {
-        RobotSpec { arm: ArmKind::Timed, press_s: 2.4, press_spread: 0.15, initiative_s: 6.0 }
+        RobotSpec { arm: ArmKind::Timed, press_s: 2.4, press_spread: 0.15, initiative_s: 6.0, speed: None }
     }
 }

@@ -329,6 +329,7 @@ pub fn follows_at_once(stamped: &TimestampedEvent, time: SessionTime) -> bool {
             | Event::RobotMoves(_)
             | Event::RobotSafety { .. }
             | Event::RobotTouched { .. }
+            | Event::RobotStage { .. }
             | Event::ParticipantBelieves(_)
             | Event::Probe(_)
             | Event::Advised(_)

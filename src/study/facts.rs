@@ -118,6 +118,7 @@ fn presses_of(robot: &RobotSpec) -> String {
     match robot.arm {
         ArmKind::Timed => format!("{} s in the median (spread {})", robot.press_s, robot.press_spread),
         ArmKind::Physics => "as long as its simulated arm takes".to_string(),
+        ArmKind::Ur(_) => "as long as its arm takes, a real UR5".to_string(),
     }
 }
 

@@ -85,7 +85,7 @@ pub struct RobotEventTally {
 
 impl RobotEventTally {
     pub fn new(arm: ArmKind) -> RobotEventTally {
-        let arm = (arm == ArmKind::Physics).then(ArmSafetySummary::default);
+        let arm = arm.has_joints().then(ArmSafetySummary::default);
         let figures = RobotEventSummary { arm, ..RobotEventSummary::default() };
         RobotEventTally { figures, ended: None, mode: SafetyMode::Normal, clock: SessionTime::ZERO }
     }
@@ -153,13 +153,15 @@ pub struct RobotArmTotals {
 
 /// Groups trials by kind of robot arm; kinds without trials are left out.
 pub fn by_arm(trials: &[&TrialStatistics]) -> Vec<RobotArmTotals> {
-    let of = |kind: ArmKind| {
+    let of = |name: &str| {
+        let mut of_kind = trials.iter().filter(|trial| trial.arm.name() == name).peekable();
+        let kind = of_kind.peek()?.arm;
         let mut group = RobotArmTotals { kind, trials: 0, robot: RobotEventSummary::default() };
-        for trial in trials.iter().filter(|trial| trial.arm == kind) {
+        for trial in of_kind {
             group.trials += 1;
             group.robot.add(&trial.robot);
         }
-        (group.trials > 0).then_some(group)
+        Some(group)
     };
-    [ArmKind::Timed, ArmKind::Physics].into_iter().filter_map(of).collect()
+    ["timed", "physics", "ur"].into_iter().filter_map(of).collect()
 }

@@ -1,22 +1,19 @@
-//! The simulated controller of a UR5, in its own time: what goes over RTDE byte by byte, the dashboard's commands, scripts,
-//! presses by contact, contacts with a hand, and lost connections.
+//! The simulated controller of a UR5, in its own time: what goes over RTDE byte by byte, the dashboard's commands, scripts;
+//! and the driver of a real UR5 against it (`driver`).
 //!
 //! The full experiments (`cargo test --release -p tomcom-devices --test devices -- --ignored --nocapture`) do what the short ones do, more often.
+
+mod driver;
 
 use std::net::{IpAddr, Ipv4Addr};
 use std::path::Path;
 use std::sync::LazyLock;
 use std::time::Duration;
 
-use rand::RngExt;
 use tokio::io::{AsyncBufReadExt, AsyncReadExt, AsyncWriteExt, BufReader};
 use tokio::net::TcpStream;
 use tokio::sync::mpsc;
-use tomcom_arm::kinematics::SerialArm;
 use tomcom_arm::physics::CYCLE_S;
-use tomcom_arm::physics::bodies::HandPose;
-use tomcom_arm::reach::BUTTON_M;
-use tomcom_core::base::rng::{Stream, stream};
 use tomcom_core::robot::SafetyMode;
 use tomcom_devices::ur::controller::{ProgramState, RobotMode, Series, SimulatedController};
 use tomcom_devices::ur::dashboard::answer;
@@ -28,11 +25,6 @@ use tomcom_devices::ur::variables::Datum;
 use tomcom_session::files::read_kitchen;
 
 const LAYOUT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../layouts/sushi.toml");
-const PRESS: &str = include_str!("../../examples/ur_press.script");
-/// Speed limit of a joint of the UR5, in radians per second.
-const FASTEST_RAD_S: f64 = std::f64::consts::PI;
-/// What a contact of a hand must stay under, in newtons.
-const MOST_N: f64 = 150.0;
 
 /// Building one takes a while, as its arm settles.
 static OFF: LazyLock<SimulatedController> = LazyLock::new(|| {
@@ -271,228 +263,6 @@ fn an_arm_at_its_limits_stops_itself() {
         "a joint would be faster than its limit",
     );
     check("servoj([9, 9, 9, 9, 9, 9])\n", "a joint would be faster than its limit");
-}
-
-/// A client of the program that presses buttons: it sends its heartbeat and its requests, and reads the answers.
-#[derive(Clone)]
-struct Client {
-    rtde: RtdeConnection,
-    heartbeat: i32,
-    request: i32,
-    button: (i32, [f64; 3]),
-    /// What came last: the program's answers, the greatest joint speed so far, and the runtime state.
-    done: i32,
-    result: i32,
-    fastest_rad_s: f64,
-}
-
-impl Client {
-    fn connect(id: u64, controller: &mut SimulatedController) -> Client {
-        let mut rtde = RtdeConnection::new(id);
-        let wanted = "output_int_register_24,output_int_register_25,actual_qd";
-        let sent = "input_int_register_24,input_int_register_25,input_int_register_26,input_double_register_24,\
-                    input_double_register_25,input_double_register_26";
-        let setup = [vec![0, 5, b'V', 0, 2], outputs(125.0, wanted), package(b'I', sent.as_bytes()), vec![0, 3, b'S']];
-        let answers = rtde.take(&setup.concat(), controller).expect("answers");
-        assert!(answers.ends_with(&[0, 4, b'S', 1]), "{answers:?}");
-        let button = (0, [0.0; 3]);
-        Client { rtde, heartbeat: 0, request: 0, button, done: 0, result: 0, fastest_rad_s: 0.0 }
-    }
-
-    /// A cycle of the controller with a heartbeat before.
-    fn cycle(&mut self, controller: &mut SimulatedController) {
-        self.heartbeat += 1;
-        let mut carried = vec![1];
-        [self.heartbeat, self.request, self.button.0].iter().for_each(|number| carried.extend(number.to_be_bytes()));
-        self.button.1.iter().for_each(|place| carried.extend(place.to_be_bytes()));
-        self.rtde.take(&package(b'U', &carried), controller).expect("it is taken");
-        controller.cycle();
-        let bytes = self.rtde.outputs(controller, 1.0);
-        let mut rest = &bytes[4..];
-        let mut integer = || match Datum::Int32(0).read(&mut rest) {
-            Some(Datum::Int32(number)) => number,
-            other => panic!("{other:?}"),
-        };
-        (self.done, self.result) = (integer(), integer());
-        let Some(Datum::Vector6d(speeds)) = Datum::Vector6d([0.0; 6]).read(&mut rest) else { panic!("{bytes:?}") };
-        self.fastest_rad_s = speeds.iter().map(|speed| speed.abs()).fold(self.fastest_rad_s, f64::max);
-        assert!(rest.is_empty());
-    }
-
-    fn ask(&mut self, controller: &SimulatedController, button: usize) {
-        self.request += 1;
-        let wire = if button < 16 { button as i32 } else { -1 };
-        self.button = (wire, controller.buttons()[button]);
-    }
-
-    /// Asks for a press, and waits until it is done; what came of it.
-    fn press(&mut self, controller: &mut SimulatedController, button: usize) -> i32 {
-        self.ask(controller, button);
-        for _ in 0..2000 {
-            self.cycle(controller);
-            if self.done == self.request {
-                return self.result;
-            }
-        }
-        panic!("button {button}: not done; {:?} {:?}", controller.safety(), messages(controller));
-    }
-}
-
-fn at_work() -> (SimulatedController, Client) {
-    let mut controller = RUNNING.clone();
-    assert!(controller.run_script(PRESS), "{:?}", messages(&mut controller));
-    let client = Client::connect(1, &mut controller);
-    (controller, client)
-}
-
-fn press_buttons(presses: usize, mut next: impl FnMut(usize) -> usize) {
-    let (mut controller, mut client) = at_work();
-    for press in 0..presses {
-        let button = next(press);
-        assert_eq!(client.press(&mut controller, button), if button < 16 { 1 } else { 2 }, "button {button}");
-    }
-    assert_eq!(controller.safety(), SafetyMode::Normal);
-    assert!(client.fastest_rad_s < FASTEST_RAD_S, "{} rad/s", client.fastest_rad_s);
-    println!("{presses} presses, all by contact; at most {:.2} rad/s", client.fastest_rad_s);
-}
-
-fn buttons() -> usize {
-    OFF.buttons().len()
-}
-
-#[test]
-fn every_button_is_pressed_by_contact() {
-    press_buttons(buttons(), |press| press);
-}
-
-#[test]
-#[ignore = "a full experiment"]
-fn a_thousand_presses_are_by_contact() {
-    let mut random = stream(7, "ur presses", 0);
-    press_buttons(1000, |_| random.random_range(0..buttons()));
-}
-
-/// A hand comes in the way of the arm between two buttons; the greatest force that is felt, in newtons.
-fn touch(random: &mut Stream) -> f64 {
-    let (mut controller, mut client) = at_work();
-    let (buttons, table_m) = (buttons(), controller.buttons()[0][2] - BUTTON_M);
-    let first = random.random_range(0..buttons);
-    client.press(&mut controller, first);
-    client.ask(&controller, (first + random.random_range(1..buttons)) % buttons);
-    let arm = SerialArm::ur5();
-    let mut comes = || {
-        (0..random.random_range(5..20)).for_each(|_| client.cycle(&mut controller));
-        if client.done == client.request {
-            client.ask(&controller, random.random_range(0..buttons));
-        }
-        // Where the tip will be in a moment, if neither hand nor forearm touches the arm yet.
-        let (mut ahead, mut with) = (controller.clone(), client.clone());
-        (0..30).for_each(|_| with.cycle(&mut ahead));
-        let tip = arm.tip(&ahead.arm_at(1.0).actual).translation.vector;
-        let away_m = arm.distance(&controller.arm_at(1.0).actual, &HandPose::reaching(tip.into(), table_m));
-        (0.002..0.05).contains(&away_m).then_some([-tip.x, -tip.y, tip.z])
-    };
-    let place = (0..500).find_map(|_| comes()).expect("a moment for a hand");
-    controller.put_hand(Some(place));
-    let mut most_n = 0.0_f64;
-    for _ in 0..250 {
-        client.cycle(&mut controller);
-        let force_n = controller.arm_at(1.0).force_n;
-        most_n = most_n.max(force_n.iter().map(|part| part * part).sum::<f64>().sqrt());
-    }
-    if most_n > SafetyMode::Normal.threshold_n() {
-        assert_eq!((controller.safety(), controller.state()), (SafetyMode::ProtectiveStop, ProgramState::Paused));
-        assert!(controller.arm_at(1.0).target_speeds.iter().all(|speed| speed.abs() < 1e-6), "the arm stands");
-    }
-    most_n
-}
-
-fn touch_often(times: usize) {
-    let mut random = stream(8, "ur contacts", 0);
-    let mut felt: Vec<f64> = (0..times).map(|_| touch(&mut random)).collect();
-    felt.sort_by(f64::total_cmp);
-    let stopped = felt.iter().filter(|force_n| **force_n > SafetyMode::Normal.threshold_n()).count();
-    println!("{times} contacts: at most {:.0} N, {stopped} stopped the arm", felt[times - 1]);
-    assert!(felt[times - 1] < MOST_N, "{felt:?}");
-    assert!(stopped > 0, "{felt:?}");
-}
-
-#[test]
-fn a_contact_stops_the_arm_under_150_n() {
-    touch_often(8);
-}
-
-#[test]
-#[ignore = "a full experiment"]
-fn two_hundred_contacts_stay_under_150_n() {
-    touch_often(200);
-}
-
-/// The connection is lost while the arm moves; how long after the last heartbeat it brakes, and stands, in seconds.
-fn lose_connection(random: &mut Stream) -> (f64, f64) {
-    let (mut controller, mut client) = at_work();
-    let button = random.random_range(0..buttons());
-    client.ask(&controller, button);
-    for _ in 0..random.random_range(5..90) {
-        client.cycle(&mut controller);
-    }
-    client.rtde.leave(&mut controller);
-    // The last heartbeat came before the last cycle.
-    let mut since_s = CYCLE_S;
-    let mut brakes_s = None;
-    while brakes_s.is_none() || controller.arm_at(1.0).target_speeds.iter().any(|speed| *speed != 0.0) {
-        controller.cycle();
-        since_s += CYCLE_S;
-        if controller.state() == ProgramState::Stopped {
-            brakes_s.get_or_insert(since_s);
-        }
-        assert!(since_s < 2.0, "it goes on without its client");
-    }
-    // The client comes back, and the arm goes on.
-    assert!(controller.run_script(PRESS));
-    let mut client = Client::connect(2, &mut controller);
-    let expected = if button < 16 { 1 } else { 2 };
-    assert_eq!(client.press(&mut controller, button), expected);
-    (brakes_s.unwrap_or(f64::INFINITY), since_s)
-}
-
-fn lose_connections(times: usize) {
-    let mut random = stream(9, "ur connections", 0);
-    let lost: Vec<(f64, f64)> = (0..times).map(|_| lose_connection(&mut random)).collect();
-    let most = |of: fn(&(f64, f64)) -> f64| lost.iter().map(of).fold(0.0, f64::max);
-    println!(
-        "{times} lost connections: braked within {:.3} s, stood within {:.3} s",
-        most(|one| one.0),
-        most(|one| one.1)
-    );
-    assert!(most(|one| one.0) <= 0.1, "{lost:?}");
-}
-
-#[test]
-fn without_a_heartbeat_the_arm_brakes_within_a_tenth_of_a_second() {
-    lose_connections(6);
-}
-
-#[test]
-#[ignore = "a full experiment"]
-fn a_hundred_lost_connections_end_with_an_arm_at_rest() {
-    lose_connections(100);
-}
-
-#[test]
-fn a_lost_motor_is_a_fault_from_which_the_safety_system_is_restarted() {
-    let (mut controller, mut client) = at_work();
-    client.press(&mut controller, 0);
-    client.ask(&controller, 1);
-    (0..40).for_each(|_| client.cycle(&mut controller));
-    Fault::Joint(1).happen(&mut controller);
-    (0..125).for_each(|_| client.cycle(&mut controller));
-    assert_eq!((controller.safety(), controller.mode()), (SafetyMode::Fault, RobotMode::PowerOff));
-    assert!(!controller.run_script(PRESS));
-    assert_eq!(answer("restart safety", &mut controller).as_deref(), Some("Restarting safety"));
-    controller.release_brakes();
-    run(&mut controller, 2.1);
-    assert!(controller.run_script("stopj(2)\n"));
 }
 
 #[test]

@@ -1,5 +1,5 @@
 """The simulated controller of a UR5 against clients of other people: PyPI's ur-rtde and universal-robots-clients, and
-Universal Robots' own RTDE client for Python.
+Universal Robots' own RTDE client for Python; and a live session that drives it.
 
     tests/outside/ur.py TOMCOM FOLDER [CLIENT]
 
@@ -21,6 +21,9 @@ import rtde_receive
 import script_client
 from universal_robots_clients import dashboard_client as dashboard
 from universal_robots_clients import rtde_client as registers
+
+sys.path.insert(0, str(Path(__file__).parent))
+from console import Console  # noqa: E402
 
 TOMCOM, SCRATCH = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
 CLIENT = Path(sys.argv[3]).resolve() if len(sys.argv) > 3 else None
@@ -132,11 +135,11 @@ def check_script(receive):
     assert max(abs(receive.getActualQ()[joint] - before[joint]) for joint in range(1, 6)) < 1e-3
 
 
-class Presser:
-    """Universal Robots' RTDE client, which drives the program that presses buttons."""
+class Legs:
+    """Universal Robots' RTDE client, which sends legs of a way to the program of tomcom's driver."""
 
-    INPUTS = [f"input_int_register_{at}" for at in (24, 25, 26)] + [f"input_double_register_{at}" for at in (24, 25, 26)]
-    OUTPUTS = ["output_int_register_24", "output_int_register_25", "runtime_state", "safety_status_bits", "actual_qd"]
+    INPUTS = [f"input_int_register_{at}" for at in range(24, 30)] + [f"input_double_register_{at}" for at in range(24, 48)]
+    OUTPUTS = ["output_int_register_24", "output_int_register_25", "runtime_state", "safety_status_bits", "actual_q", "actual_qd"]
 
     def __init__(self):
         from rtde.rtde import RTDE  # noqa: PLC0415
@@ -144,28 +147,25 @@ class Presser:
         self.rtde = RTDE(HOST)
         self.rtde.connect()
         assert self.rtde.get_controller_version()[:2] == (5, 11)
-        kinds = ["INT32", "INT32", "UINT32", "UINT32", "VECTOR6D"]
+        kinds = ["INT32", "INT32", "UINT32", "UINT32", "VECTOR6D", "VECTOR6D"]
         assert self.rtde.send_output_setup(self.OUTPUTS, kinds, frequency=125)
-        self.inputs = self.rtde.send_input_setup(self.INPUTS, ["INT32"] * 3 + ["DOUBLE"] * 3)
+        self.inputs = self.rtde.send_input_setup(self.INPUTS, ["INT32"] * 6 + ["DOUBLE"] * 24)
         assert self.inputs is not None and self.rtde.send_start()
-        self.beat, self.request = 0, 0
-        self.ask(0, [0.0, 0.0, 0.0])
-        self.request = 0
-        self.fastest = 0.0
+        self.beat, self.leg, self.poses = 0, 0, [0.0] * 24
 
-    def ask(self, wire, place):
-        self.request += 1
-        self.wire, self.place = wire, place
+    def turn(self, joints, angle):
+        """A leg that turns the first joint by this angle, in radians."""
+        self.leg += 1
+        self.poses = [place for part in range(4) for place in [joints[0] + angle * part / 3, *joints[1:]]]
 
     def exchange(self):
         self.beat += 1
-        values = [self.beat, self.request, self.wire, *self.place]
+        values = [self.beat, self.leg, 0, 1500, 1000, -1, *self.poses]
         for name, value in zip(self.INPUTS, values, strict=True):
             setattr(self.inputs, name, value)
         self.rtde.send(self.inputs)
         state = self.rtde.receive()
         assert state is not None
-        self.fastest = max(self.fastest, *(abs(speed) for speed in state.actual_qd))
         return state
 
     def until(self, true, seconds=LONG_S):
@@ -175,55 +175,92 @@ class Presser:
         return state
 
 
-def check_presses(controller, client):
-    """The robot's program presses buttons by contact; it stops when its client is gone, and comes back."""
-    presser = Presser()
-    presser.exchange()
+def check_legs(client):
+    """The driver's program follows legs, also of another client; it stops when its client is gone, and comes back."""
+    legs = Legs()
+    begun = legs.until(lambda state: state.runtime_state == 1)
     client.play()
-    presser.until(lambda state: state.runtime_state == 2)
-    for number in range(4):
-        presser.ask(number, controller.buttons[number])
-        state = presser.until(lambda state: state.output_int_register_24 == presser.request)
-        assert state.output_int_register_25 == 1, (number, vars(state))
-    print(f"  4 presses by contact, at most {presser.fastest:.2f} rad/s")
-    assert presser.fastest < 3.15
-
-    # A stop at the pendant, a protective stop, and what follows from each.
-    controller.type("stop-program")
-    presser.until(lambda state: state.runtime_state == 1)
-    client.play()
-    presser.until(lambda state: state.runtime_state == 2)
-    controller.type("protective-stop")
-    presser.until(lambda state: state.safety_status_bits & 4)
-    presser.until(lambda state: state.runtime_state == 4)
-    assert "Cannot unlock" in dashboard.send_command(HOST, "unlock protective stop")
-    end = time.monotonic() + 6.0
-    presser.until(lambda _: time.monotonic() > end)
-    client.unlockProtectiveStop()
-    client.play()
-    presser.until(lambda state: state.runtime_state == 2 and state.safety_status_bits & 1)
+    legs.until(lambda state: state.runtime_state == 2)
+    for angle in (0.3, -0.3):
+        before = legs.exchange()
+        legs.turn(before.actual_q, angle)
+        state = legs.until(lambda state: state.output_int_register_24 == legs.leg)
+        assert state.output_int_register_25 == 0, vars(state)
+        assert abs(state.actual_q[0] - before.actual_q[0] - angle) < 0.01, (begun.actual_q, vars(state))
+    # A leg that begins elsewhere is refused.
+    legs.turn([angle + 0.1 for angle in state.actual_q], 0.3)
+    state = legs.until(lambda state: state.output_int_register_24 == legs.leg)
+    assert state.output_int_register_25 == 4, vars(state)
 
     # The heartbeat ends in motion: the program stops by itself.
-    presser.ask(0, controller.buttons[0])
-    presser.until(lambda state: max(abs(speed) for speed in state.actual_qd) > 0.2)
-    presser.rtde.disconnect()
+    legs.turn(state.actual_q, 0.3)
+    legs.until(lambda state: max(abs(speed) for speed in state.actual_qd) > 0.2)
+    legs.rtde.disconnect()
     wait_until(lambda: not client.running())
-    again = Presser()
+    again = Legs()
     state = again.until(lambda state: max(abs(speed) for speed in state.actual_qd) < 1e-3)
     assert state.runtime_state == 1
-    client.play()
-    again.ask(1, controller.buttons[1])
-    again.until(lambda state: state.runtime_state == 2)
-    state = again.until(lambda state: state.output_int_register_24 == again.request)
-    assert state.output_int_register_25 == 1
+    again.rtde.disconnect()
 
-    # Every connection is cut; the program stops as well.
-    controller.type("disconnect 1")
-    try:
-        again.until(lambda _: False, seconds=5.0)
-    except Exception as error:
-        print(f"  cut: {error}")
-    wait_until(lambda: is_open(29999) and running_or_none(HOST) == "Program running: false")
+
+def robot_presses(folder):
+    """Number of presses of the robot in the only recording in a folder."""
+    logs = list(folder.glob("*/events.jsonl"))
+    return sum(line.count('"kind":"press","agent":"robot"') for line in logs[0].read_text().splitlines()) if logs else 0
+
+
+def check_session():
+    """A live session drives the served arm: set-up, presses, faults, and its recording verifies without an arm."""
+    controller = Controller()
+    session, out = SCRATCH / "real.toml", SCRATCH / "recordings"
+    settings = '[trial]\ncondition = "none"\nseconds = 900\n[assistant]\nshadow = "off"\n[robot]\n'
+    session.write_text(f'layout = "{ROOT}/layouts/sushi.toml"\n{settings}arm = {{ ur = "{HOST}" }}\nspeed = 1.0\n')
+    doctor = subprocess.run([TOMCOM, "doctor", session], capture_output=True, text=True, check=False)
+    assert "simulated by tomcom" in doctor.stdout and "within reach" in doctor.stdout, doctor.stdout
+    refused = subprocess.run([TOMCOM, "simulate", session, "--trials", "1"], capture_output=True, text=True, check=False)
+    assert refused.returncode != 0 and "a real arm, in a run without a console" in refused.stderr, refused.stderr
+
+    with Console(TOMCOM, [session, "--out", out]) as console:
+        def presses(more):
+            wanted = robot_presses(out) + more
+            wait_until(lambda: robot_presses(out) >= wanted, 180.0)
+
+        console.wait_for("no power")
+        console.key(".")
+        console.wait_for("Checks before the trial")
+        console.key("\x19")
+        console.wait_for("waits for its dry run")
+        console.key("\x19")
+        console.wait_for("dry run done", 900)
+        console.key("\x19")
+        console.wait_for("arm: ready|all checks|start the trial")
+        console.key("\x1b")
+        console.start()
+        presses(4)
+        controller.type("protective-stop")
+        console.wait_for("PROTECTIVE STOP")
+        console.key("\x12")
+        presses(2)
+        controller.type("disconnect 1")
+        console.wait_for("NO CONNECTION")
+        console.wait_for("DOES NOT RUN")
+        console.key("\x12")
+        presses(2)
+        controller.type("stop-program")
+        console.wait_for("DOES NOT RUN")
+        console.key("\x12")
+        presses(2)
+        console.key(" ")
+        console.wait_for("EMERGENCY STOP")
+        console.key("\x12")
+        presses(1)
+        console.end()
+        console.quit()
+    controller.end()
+    recording = next(out.iterdir())
+    verified = subprocess.run([TOMCOM, "replay", recording, "--verify"], capture_output=True, text=True, check=False)
+    assert verified.returncode == 0 and "verified" in verified.stdout, verified
+    print(f"  {robot_presses(out)} presses in a session; {verified.stdout.strip()}")
 
 
 def check_registers():
@@ -264,9 +301,11 @@ def main():
         print("LEFT OUT: Universal Robots' own client, of which no clone was named")
     else:
         sys.path.insert(0, str(CLIENT))
-        check_presses(controller, client)
-        print("presses by contact: Universal Robots' own client")
+        check_legs(client)
+        print("legs: Universal Robots' own client")
     controller.end()
+    check_session()
+    print("a session: tomcom's driver")
 
     old = Controller("--series", "cb3")
     older = dashboard_client.DashboardClient(HOST)

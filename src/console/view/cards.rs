@@ -22,7 +22,7 @@ use tomcom_core::kitchen::{Agent, Dish};
 use tomcom_core::robot::SafetyMode;
 use tomcom_session::event::Event;
 use tomcom_session::history::{event_words, wording};
-use tomcom_session::settings::{ArmKind, Condition, ParticipantKind};
+use tomcom_session::settings::{Condition, ParticipantKind};
 use tomcom_session::{Session, TimelineEvent, TrialPhase};
 
 /// Width of a card, and least width of the names in its left column.
@@ -186,9 +186,9 @@ fn after(session: &Session, model: &ConsoleModel) -> Card {
     Card { title: format!("Trial {}", event_words::trial(session.phase)), facts, keys }
 }
 
-/// Lines of the card about stops of the simulated arm, in ISO's words; the timed arm cannot touch anybody.
+/// Lines of the card about stops of an arm with joints, in ISO's words; the timed arm cannot touch anybody.
 fn stops(session: &Session) -> Vec<Fact> {
-    if session.spec.robot.arm != ArmKind::Physics {
+    if !session.spec.robot.arm.has_joints() {
         return Vec::new();
     }
     let number = |is_it: &dyn Fn(&TimelineEvent) -> bool| {

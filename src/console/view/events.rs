@@ -76,7 +76,9 @@ fn row(brush: &mut Painter, line: Rect, session: &Session, model: &ConsoleModel,
         TimelineEvent::Press { agent: Agent::Human, .. } => TextRole::Human,
         TimelineEvent::Press { agent: Agent::Robot, .. } => TextRole::Robot,
         TimelineEvent::Noted(Event::SignalShown { .. } | Event::SignalEnded { .. }) => TextRole::Signal,
-        TimelineEvent::Noted(Event::RobotStopped | Event::RobotSafety { .. }) => TextRole::Alarm,
+        TimelineEvent::Noted(Event::RobotStopped | Event::RobotSafety { .. } | Event::RobotStage { .. }) => {
+            TextRole::Alarm
+        }
         TimelineEvent::Noted(Event::RobotTouched { .. }) => TextRole::Robot,
         _ => TextRole::Strong,
     };

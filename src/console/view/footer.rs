@@ -165,9 +165,8 @@ pub fn message(brush: &mut Painter, regions: &PanelAreas, session: &Session, mod
     } else if let Some(landmark) = model.playback.as_ref().and_then(Playback::stands_at) {
         let strong = brush.style(TextRole::Strong);
         brush.text(area.x + 1, area.y, area.width - 1, &format!(" {landmark} "), strong);
-    } else if session.robot.arm.mode.has_stopped_itself() && session.robot.stopped {
-        let arm = &session.robot.arm;
-        let why = event_words::arm_stopped(arm.mode, arm.stopped_by_n, None);
+    } else if session.robot.stopped && !session.robot.is_stopped_by_wizard() {
+        let why = event_words::why_stopped(&session.robot.arm);
         let resume = model.keys.chord_for(&KeyAction::ResumeRobot).filter(|_| model.playback.is_none());
         let resume = resume.map_or(String::new(), |key| format!("; {key} resumes the arm"));
         let alarm = brush.style(TextRole::Alarm);

@@ -12,8 +12,7 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::kitchen::Agent;
 use tomcom_core::robot::{SLOWS_M, SafetyMode};
-use tomcom_session::history::wording;
-use tomcom_session::settings::ArmKind;
+use tomcom_session::history::{event_words, wording};
 use tomcom_session::{Session, ShownSignal, TrialPhase, proposals};
 
 /// What the console says while the arm is slow since a hand is near.
@@ -40,7 +39,7 @@ pub fn draw_robot(brush: &mut Painter, regions: &PanelAreas, session: &Session, 
         robot_line(brush, area.x + 10, area.y, columns, session, model);
         return;
     }
-    let is_arm = session.spec.robot.arm == ArmKind::Physics;
+    let is_arm = session.spec.robot.arm.has_joints();
     let remark = match (session.robot.stopped, session.robot.held, &model.playback) {
         (true, ..) => String::new(),
         (false, true, _) => release(model),
@@ -83,21 +82,28 @@ fn arm(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, now
     let waits = session.robot.arm.mode == SafetyMode::Safeguard;
     let phase = format!("{:<10} ", if waits { "waits" } else { wording::arm_phase(sample.phase) });
     let hand = match sample.hand_away_m {
-        away_m if away_m < 0.005 => " hand at arm".to_string(),
-        away_m => format!(" hand {away_m:>4.2} m"),
+        None => String::new(),
+        Some(away_m) if away_m < 0.005 => " hand at arm".to_string(),
+        Some(away_m) => format!(" hand {away_m:>4.2} m"),
     };
     let force = match sample.force_n {
         force_n if force_n >= 0.5 => format!(" {force_n:>3.0} N"),
         _ => String::new(),
     };
-    let hand_role = if sample.hand_away_m < SLOWS_M { TextRole::Human } else { TextRole::Quiet };
+    let is_near = sample.hand_away_m.is_some_and(|away_m| away_m < SLOWS_M);
+    let hand_role = if is_near { TextRole::Human } else { TextRole::Quiet };
     let parts = [(phase.as_str(), TextRole::Text), (&hand, hand_role), (&force, TextRole::Text)];
     brush.parts(x, y, columns, &parts);
 }
 
 /// Draws the stop of the robot with its reason and the key that resumes it.
 fn stopped(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
-    let label = format!(" {} ", session.robot.safety_mode().name());
+    let label = match session.robot.arm.unready() {
+        Some((stage, _)) if !session.robot.arm.mode.is_stopped() => {
+            format!(" ARM: {} ", event_words::arm_stage(stage, "").to_uppercase())
+        }
+        _ => format!(" {} ", session.robot.safety_mode().name()),
+    };
     let key = model.keys.chord_for(&KeyAction::ResumeRobot).filter(|_| session.phase != TrialPhase::Closed);
     let resume = key.map(|key| format!(" {key} resume")).unwrap_or_default();
     let force = session.robot.arm.stopped_by_n.map(|force_n| format!(" {force_n:.0} N")).unwrap_or_default();
@@ -122,6 +128,13 @@ fn mode_role(mode: SafetyMode) -> TextRole {
 fn robot_line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
     if session.robot.stopped {
         stopped(brush, x, y, columns, session, model);
+        return;
+    }
+    if let Some((stage, _)) = session.robot.arm.unready().filter(|_| session.phase == TrialPhase::Ready) {
+        let key = model.keys.chord_for(&KeyAction::Manual(ManualAction::ConfirmArm)).filter(|_| stage.asks().is_some());
+        let next = key.map(|key| format!("  {key} goes on")).unwrap_or_default();
+        let words = event_words::arm_stage(stage, "");
+        brush.parts(x, y, columns, &[(&words, TextRole::Strong), (&next, TextRole::Quiet)]);
         return;
     }
     let (x, columns) = if session.robot.held { held(brush, x, y, columns, model) } else { (x, columns) };

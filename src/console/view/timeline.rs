@@ -241,7 +241,9 @@ fn mark(
         TimelineEvent::Trial(_) => (5, signs.to.to_string(), TextRole::Strong),
         TimelineEvent::Noted(event) => match event {
             Event::RobotTouched { .. } => (2, signs.touched.to_string(), TextRole::Alarm),
-            Event::RobotStopped | Event::RobotSafety { .. } => (2, signs.stopped.to_string(), TextRole::Alarm),
+            Event::RobotStopped | Event::RobotSafety { .. } | Event::RobotStage { .. } => {
+                (2, signs.stopped.to_string(), TextRole::Alarm)
+            }
             Event::RobotResumed | Event::RobotReleased { .. } => (2, signs.to.to_string(), TextRole::Robot),
             Event::RobotHeld { .. } => (2, signs.pause.to_string(), TextRole::Robot),
             Event::RobotDriven { .. } => (2, signs.by_hand.to_string(), TextRole::Signal),

@@ -42,7 +42,7 @@ impl AbortReason {
         AbortReason::Fault,
     ];
 
-    /// Whether only the arm in the physics simulation can abandon a press for this reason.
+    /// Whether only an arm that touches buttons, simulated or real, can abandon a press for this reason.
     pub fn is_of_physics(self) -> bool {
         use AbortReason::{Driven, NoLongerUseful, Skipped, Stopped};
         !matches!(self, NoLongerUseful | Stopped | Skipped | Driven)
@@ -156,14 +156,53 @@ pub struct ArmSample {
     /// The greatest contact force since the previous sample, on a button or a person, in newtons.
     #[serde(default, skip_serializing_if = "is_nothing")]
     pub force_n: f64,
-    /// The centre of the human's hand, in the frame of the robot arm's base, in metres.
-    pub hand_m: [f64; 3],
-    /// The distance between the human's hand and the arm, in metres.
-    pub hand_away_m: f64,
+    /// The centre of the human's hand, in the frame of the robot arm's base, in metres; `None` where nothing measures it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hand_m: Option<[f64; 3]>,
+    /// The distance between the human's hand and the arm, in metres; `None` where nothing measures it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hand_away_m: Option<f64>,
 }
 
 fn is_nothing(force_n: &f64) -> bool {
     *force_n == 0.0
+}
+
+/// How far a real arm is on its way to taking orders.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ArmStage {
+    /// There is no connection to its controller.
+    Lost,
+    /// It has no power, or its brakes are closed: the wizard's confirmation switches it on.
+    Off,
+    /// Its power comes on, its brakes open, or its program starts.
+    Starts,
+    /// It was never above its buttons: the wizard's confirmation begins the dry run.
+    Untried,
+    /// It goes above each of its buttons, slowly.
+    DryRun,
+    /// It was above each of its buttons: the wizard's confirmation lets it press.
+    Tried,
+    /// It takes orders.
+    Ready,
+    /// Its program does not run: the wizard's confirmation starts it again.
+    Stopped,
+}
+
+impl ArmStage {
+    /// What the wizard's confirmation lets the arm do in this stage, in words; `None` where there is nothing to confirm.
+    pub fn asks(self) -> Option<&'static str> {
+        match self {
+            ArmStage::Off => Some("switches the arm on and opens its brakes: nobody is near the arm"),
+            ArmStage::Untried => {
+                Some("lets the arm go above each button at a tenth of its speed: nobody is near the arm")
+            }
+            ArmStage::Tried => Some("confirms that the arm went above each button, and touched nothing"),
+            ArmStage::Stopped => Some("unlocks the arm and starts its program again: nobody is near the arm"),
+            ArmStage::Lost | ArmStage::Starts | ArmStage::DryRun | ArmStage::Ready => None,
+        }
+    }
 }
 
 /// Contact force above which the arm stops at normal speed, in newtons (power and force limiting, ISO/TS 15066, 5.5.5).

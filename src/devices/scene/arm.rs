@@ -12,7 +12,6 @@ use tomcom_core::kitchen::{Agent, Button, ButtonId, Kitchen, KitchenChange, Pres
 use tomcom_core::robot::SafetyMode;
 use tomcom_core::robot::{ArmSample, JointAngles};
 use tomcom_session::history::{event_words, wording};
-use tomcom_session::settings::ArmKind;
 use tomcom_session::{Event, Session, TimestampedEvent};
 
 /// Margin of the table around the buttons, and thickness of the table, in metres.
@@ -88,7 +87,7 @@ impl RobotArmScene {
         // Before the first sample the arm has no pose.
         let mut rows = last.map_or_else(Vec::new, |moment| places(&self.arm, &moment.joints));
         let rests = resting_place(&session.kitchen).coords.into();
-        let [x, y, z] = last.map_or(rests, |moment| moment.hand_m);
+        let [x, y, z] = last.and_then(|moment| moment.hand_m).unwrap_or(rests);
         rows.push(EntityUpdate::new(HAND, EntityData::Place(at(x, y, z))));
         rows
     }
@@ -139,8 +138,7 @@ impl RobotArmScene {
     /// Entity updates from a sample of the simulated arm: the arm's pose, the contact force, the hand.
     fn moves(&mut self, moment: &ArmSample) -> Vec<EntityUpdate> {
         let mut rows = places(&self.arm, &moment.joints);
-        let [x, y, z] = moment.hand_m;
-        rows.push(EntityUpdate::new(HAND, EntityData::Place(at(x, y, z))));
+        rows.extend(moment.hand_m.map(|[x, y, z]| EntityUpdate::new(HAND, EntityData::Place(at(x, y, z)))));
         let felt = (moment.force_n >= SHOWN_N).then(|| ScenePoint {
             at_m: self.arm.tip(&moment.joints).translation.vector.into(),
             radius_m: FELT_M,
@@ -152,7 +150,8 @@ impl RobotArmScene {
         }
         self.feels = felt.is_some();
         rows.push(EntityUpdate::new(FORCE, EntityData::Value(moment.force_n)));
-        rows.push(EntityUpdate::new(AWAY, EntityData::Value(moment.hand_away_m * 100.0)));
+        let away = moment.hand_away_m.map(|away_m| EntityUpdate::new(AWAY, EntityData::Value(away_m * 100.0)));
+        rows.extend(away);
         rows
     }
 }
@@ -163,7 +162,7 @@ fn no_goal() -> Vec<EntityUpdate> {
 
 /// Whether a session records the poses of the arm, so that they can be shown.
 pub fn has_poses(session: &Session) -> bool {
-    session.spec.robot.arm == ArmKind::Physics
+    session.spec.robot.arm.has_joints()
 }
 
 /// What the robot does now, in words.
@@ -173,7 +172,7 @@ pub fn robot_does(session: &Session) -> String {
         return "stopped by the wizard".to_string();
     }
     if robot.stopped {
-        return event_words::arm_stopped(robot.arm.mode, robot.arm.stopped_by_n, None);
+        return event_words::why_stopped(&robot.arm);
     }
     if let Some((button, _, until)) = robot.intention {
         let left_s = until.secs_since(session.time).max(0.0).ceil();
@@ -221,7 +220,7 @@ fn hand_shapes() -> Vec<EntityUpdate> {
 
 /// A mark at the position of the participant's hand, labelled with these words.
 fn touched(session: &Session, words: String) -> EntityUpdate {
-    let at_m = session.robot.arm.last.map_or([0.0; 3], |(_, moment)| moment.hand_m);
+    let at_m = session.robot.arm.last.and_then(|(_, moment)| moment.hand_m).unwrap_or_default();
     EntityUpdate::new(
         CONTACT,
         EntityData::Points(vec![ScenePoint { at_m, radius_m: CONTACT_M, words, colour: entity_content::ERROR }]),

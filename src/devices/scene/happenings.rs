@@ -124,7 +124,7 @@ pub fn entry(
         TimelineEvent::Noted(Event::SignalEnded { .. }) => {
             say("wizard/signals", SceneLogLevel::Warning, text, entity_content::WIZARD)
         }
-        TimelineEvent::Noted(Event::RobotSafety { .. }) => {
+        TimelineEvent::Noted(Event::RobotSafety { .. } | Event::RobotStage { .. }) => {
             say("robot/events", SceneLogLevel::Error, text, entity_content::ERROR)
         }
         TimelineEvent::Noted(Event::RobotTouched { .. }) => {

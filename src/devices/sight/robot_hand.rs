@@ -17,7 +17,6 @@ use tomcom_core::kitchen::{Agent, ButtonId};
 #[cfg(feature = "physics")]
 use tomcom_core::robot::ArmPhase;
 #[cfg(feature = "physics")]
-use tomcom_session::settings::ArmKind;
 use tomcom_session::wall_display::RobotDepiction;
 use tomcom_session::{Session, TrialPhase};
 
@@ -182,7 +181,7 @@ struct ArmTip(SerialArm);
 impl ArmTip {
     /// The kinematics of a session's arm; `None` if the session has no physical arm.
     pub fn of_session(session: &Session) -> Option<ArmTip> {
-        (session.spec.robot.arm == ArmKind::Physics).then(|| ArmTip(SerialArm::ur5()))
+        session.spec.robot.arm.has_joints().then(|| ArmTip(SerialArm::ur5()))
     }
 
     /// Position of the arm's tip at the last recorded pose, in metres in the frame of the arm's base, and whether the

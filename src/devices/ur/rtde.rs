@@ -1,4 +1,5 @@
-//! A connection to the Real-Time Data Exchange interface, from the controller's side: bytes in, bytes out.
+//! A connection to the Real-Time Data Exchange interface, from the controller's side: bytes in, bytes out. The other side is
+//! [`super::client`].
 //!
 //! A package is its length in two bytes, the letter of its kind, and what it carries, big endian. A client negotiates
 //! version 2 of the protocol, sets up recipes (lists of variables) of outputs and inputs, and starts; then each output
@@ -39,6 +40,34 @@ pub fn package(kind: u8, carried: &[u8]) -> Vec<u8> {
     bytes
 }
 
+/// Puts packages together from the pieces in which they arrive.
+#[derive(Clone, Debug, Default)]
+pub struct PackageReader(Vec<u8>);
+
+impl PackageReader {
+    pub fn extend(&mut self, bytes: &[u8]) {
+        self.0.extend(bytes);
+    }
+
+    /// The letter of the next whole package, and what it carries; `None` until it is whole.
+    ///
+    /// # Errors
+    /// Its length cannot be.
+    pub fn take_package(&mut self) -> Result<Option<(u8, Vec<u8>)>, RtdeFault> {
+        let Some(head) = self.0.first_chunk::<HEADER>() else { return Ok(None) };
+        let (length, kind) = (u16::from_be_bytes([head[0], head[1]]), head[2]);
+        if usize::from(length) < HEADER {
+            return Err(RtdeFault::Length(length));
+        }
+        if self.0.len() < usize::from(length) {
+            return Ok(None);
+        }
+        let rest = self.0.split_off(usize::from(length));
+        let whole = std::mem::replace(&mut self.0, rest);
+        Ok(Some((kind, whole[HEADER..].to_vec())))
+    }
+}
+
 /// A text message to a client.
 pub fn text_message(message: &ControllerMessage) -> Vec<u8> {
     let source = "tomcom";
@@ -65,7 +94,7 @@ struct OutputRecipe {
 pub struct RtdeConnection {
     /// Tells connections apart, for the inputs that they claim.
     id: u64,
-    bytes: Vec<u8>,
+    packages: PackageReader,
     is_agreed: bool,
     is_started: bool,
     outputs: Vec<OutputRecipe>,
@@ -76,7 +105,7 @@ impl RtdeConnection {
     pub fn new(id: u64) -> RtdeConnection {
         RtdeConnection {
             id,
-            bytes: Vec::new(),
+            packages: PackageReader::default(),
             is_agreed: false,
             is_started: false,
             outputs: Vec::new(),
@@ -89,20 +118,10 @@ impl RtdeConnection {
     /// # Errors
     /// Why the connection has to be closed.
     pub fn take(&mut self, bytes: &[u8], controller: &mut SimulatedController) -> Result<Vec<u8>, RtdeFault> {
-        self.bytes.extend(bytes);
+        self.packages.extend(bytes);
         let mut answers = Vec::new();
-        while let Some(head) = self.bytes.first_chunk::<HEADER>() {
-            let length = u16::from_be_bytes([head[0], head[1]]);
-            let kind = head[2];
-            if usize::from(length) < HEADER {
-                return Err(RtdeFault::Length(length));
-            }
-            if self.bytes.len() < usize::from(length) {
-                break;
-            }
-            let rest = self.bytes.split_off(usize::from(length));
-            let whole = std::mem::replace(&mut self.bytes, rest);
-            answers.extend(self.answer(kind, &whole[HEADER..], controller)?);
+        while let Some((kind, carried)) = self.packages.take_package()? {
+            answers.extend(self.answer(kind, &carried, controller)?);
         }
         Ok(answers)
     }

@@ -23,6 +23,22 @@ pub enum Datum {
 }
 
 impl Datum {
+    /// A value of the type of this name, as [`Datum::kind`] tells it.
+    pub fn of_kind(kind: &str) -> Option<Datum> {
+        Some(match kind {
+            "BOOL" => Datum::Bool(false),
+            "UINT8" => Datum::Uint8(0),
+            "UINT32" => Datum::Uint32(0),
+            "UINT64" => Datum::Uint64(0),
+            "INT32" => Datum::Int32(0),
+            "DOUBLE" => Datum::Double(0.0),
+            "VECTOR3D" => Datum::Vector3d([0.0; 3]),
+            "VECTOR6D" => Datum::Vector6d([0.0; 6]),
+            "VECTOR6INT32" => Datum::Vector6int32([0; 6]),
+            _ => return None,
+        })
+    }
+
     /// The name of its type in the answer to a setup.
     pub fn kind(&self) -> &'static str {
         match self {
@@ -119,6 +135,19 @@ pub fn safety_number(safety: SafetyMode) -> i32 {
         SafetyMode::Safeguard => 5,
         SafetyMode::EmergencyStop => 7,
         SafetyMode::Fault => 9,
+    }
+}
+
+/// The safety mode behind RTDE's number: those of other generations and options count as the nearest of the program's.
+pub fn safety_mode(number: i32) -> SafetyMode {
+    match number {
+        1 => SafetyMode::Normal,
+        2 => SafetyMode::Reduced,
+        3 | 4 => SafetyMode::ProtectiveStop,
+        // 12 and 13: stops of the automatic mode, and of the enabling device.
+        5 | 12 | 13 => SafetyMode::Safeguard,
+        6 | 7 => SafetyMode::EmergencyStop,
+        _ => SafetyMode::Fault,
     }
 }
 

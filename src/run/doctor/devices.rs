@@ -1,4 +1,4 @@
-//! Checks of the participant's page, of the gaze source and of the Lab Streaming Layer for `tomcom doctor`, where the
+//! Checks of the participant's page, of the gaze source, of a real arm and of the Lab Streaming Layer for `tomcom doctor`, where the
 //! session uses them.
 
 use std::net::{SocketAddr, TcpListener, UdpSocket};
@@ -8,9 +8,13 @@ use tomcom_core::base::text::printable;
 use tomcom_core::gaze::tags::TagError;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_devices::lsl::{self, DiscoveredLslStream};
+#[cfg(feature = "ur")]
+use tomcom_devices::ur::{driver::UrDriver, link, server::PORTS};
 use tomcom_devices::{gaze_file, pupil};
 use tomcom_session::SessionSpec;
 use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict, recorded_gaze};
+#[cfg(feature = "ur")]
+use tomcom_session::settings::{ArmKind, RobotSpec};
 use tomcom_session::settings::{GazeSource, ParticipantKind, ParticipantSpec};
 use tomcom_session::tracker::TrackerSpec;
 
@@ -28,6 +32,19 @@ pub(super) fn display(spec: &SessionSpec) -> Option<PreflightCheck> {
         Err(reason) => {
             PreflightCheck::new("wall display", PreflightVerdict::Failed, format!("{address}: {reason}"), remedy)
         }
+    })
+}
+
+/// Checks of a real arm and its controller; nothing moves.
+#[cfg(feature = "ur")]
+pub(super) fn arm(spec: &SessionSpec, kitchen: &Kitchen) -> Vec<PreflightCheck> {
+    let ArmKind::Ur(address) = spec.robot.arm else { return Vec::new() };
+    let driver = UrDriver::new(kitchen, spec.robot.speed.unwrap_or(RobotSpec::SPEED), false);
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    let found = runtime.map_err(|error| error.to_string());
+    found.and_then(|runtime| runtime.block_on(link::examine(address, PORTS, driver))).unwrap_or_else(|why| {
+        let remedy = "switch the controller on, and set its address under [robot]: arm = { ur = \"192.168.1.10\" }";
+        vec![PreflightCheck::new("controller", PreflightVerdict::Failed, why, remedy)]
     })
 }
 

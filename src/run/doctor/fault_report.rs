@@ -12,6 +12,7 @@ use tomcom_session::features::Feature;
 use tomcom_session::files::file_error::FileResult;
 use tomcom_session::files::{WallTime, overwrite};
 use tomcom_session::film::FilmEvent;
+use tomcom_session::history::event_words;
 use tomcom_session::log::{LOG_NAME, LogReader};
 use tomcom_session::preflight_checks::PreflightVerdict;
 use tomcom_session::tracker::TrackerEvent;
@@ -143,6 +144,7 @@ fn warning(stamped: &TimestampedEvent) -> Option<String> {
         | Event::Display(DisplayEvent::Connected { .. } | DisplayEvent::Drawn { .. })
         | Event::Film(FilmEvent::Began { .. }) => None,
         Event::TrialAborted { .. } => Some(format!("{at} trial_aborted")),
+        Event::RobotStage { stage, .. } => Some(format!("{at} robot_stage {}", event_words::arm_stage(*stage, ""))),
         event @ (Event::Tracker(_)
         | Event::Display(_)
         | Event::Film(_)

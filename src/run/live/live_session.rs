@@ -21,7 +21,7 @@ use crate::run::error::{LiveError, TerminalError};
 use crate::run::event_loop::{self, ConsoleShell, FRAME, LoopEvent, ShellDeadlines, ShellView};
 use crate::run::key_file::key_map;
 use crate::run::leaving::{LeavingReason, LiveOutcome, TutorialProgress};
-use crate::run::operator_station::{GazeTracker, OperatorStation};
+use crate::run::operator_station::{ArmOrders, GazeTracker, OperatorStation};
 use crate::run::options::SessionStart;
 use crate::run::participant_link::{ParticipantLink, next_line};
 use crate::run::resume::{PreparedSession, RecordingPlace};
@@ -56,6 +56,8 @@ pub(super) struct Live {
     pub(super) comparison: Option<ComparisonThreadHandle>,
     /// The participant's display, if there is one.
     pub(super) display: Option<ParticipantDisplay>,
+    /// The orders to a real arm, if there is one.
+    arm: Option<ArmOrders>,
     /// What tells the state of the observers' page, if there is one.
     pub(super) observers: Option<Box<dyn Fn() -> ObserverStatus>>,
     /// Session time at which the page that takes part was last heard of, while it is lost.
@@ -149,6 +151,7 @@ impl ConsoleShell for Live {
             LoopEvent::EngineDue => self.fire(),
             LoopEvent::TargetDue => self.show_target(),
             LoopEvent::Page(input) => self.take_page_input(input),
+            LoopEvent::Arm(news) => self.take_arm_news(news),
             LoopEvent::Advice(news) => self.take_assistant_news(news),
             LoopEvent::Remark(remark) => self.take_remark(remark),
             LoopEvent::PointerTick => self.sample_pointer(),
@@ -213,6 +216,7 @@ impl Live {
             participant,
             comparison,
             display,
+            arm: station.arm.orders(),
             observers: station.observers.status(),
             page_lost: None,
             model,
@@ -236,6 +240,9 @@ impl Live {
         live.begin_viewing(is_new, first.last().map_or(0, |last| last.seq + 1));
         live.begin_lsl(station);
         live.begin_filming();
+        if let Some(arm) = &live.arm {
+            arm.begin();
+        }
         live.record(&first);
         live.tick();
         if let Some(request) = compare {
@@ -246,6 +253,20 @@ impl Live {
         live.build_display();
         live.begin_protocol(consent);
         Ok(live)
+    }
+
+    /// Passes an event to a real arm, where the event is about it.
+    pub(super) fn tell_arm(&self, event: &Event) {
+        if let Some(arm) = &self.arm {
+            arm.tell(event);
+        }
+    }
+
+    /// Repeats the order for a real arm.
+    pub(super) fn order_arm(&self) {
+        if let Some((arm, order)) = self.arm.as_ref().zip(self.engine.arm_order()) {
+            arm.order(order);
+        }
     }
 
     /// Pauses the trial before the program is stopped, since nothing happens and nothing is recorded then.

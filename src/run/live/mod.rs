@@ -5,6 +5,11 @@
 //! with every event, gaze within 50 ms. Four times a second, the loop checks whether the log is still in place, and
 //! saves a log whose folder vanished.
 
+#[cfg(feature = "ur")]
+mod arm_news;
+#[cfg(not(feature = "ur"))]
+#[path = "without_arm.rs"]
+mod arm_news;
 mod capture_orders;
 #[cfg(feature = "display")]
 pub mod display;

@@ -6,6 +6,7 @@ use super::viewing::StreamedSession;
 use crate::console::console_model::NoticeLevel;
 use crate::console::console_model::RecordingStatus;
 use crate::run::doctor::free_bytes;
+use tomcom_core::robot::ArmStage;
 use tomcom_session::film::FilmEvent;
 use tomcom_session::history::belief_track::{self, BeliefSnapshot};
 use tomcom_session::history::error_reasons::ExplainedError;
@@ -29,6 +30,7 @@ impl Live {
                 Event::RobotSafety { mode, force_n, joint } if mode.has_stopped_itself() => {
                     self.model.say(NoticeLevel::Alarm, event_words::arm_stopped(mode, force_n, joint));
                 }
+                Event::RobotStage { stage, ref found } => self.tell_arm_stage(stage, found),
                 Event::External(ref event) => {
                     if let Some(words) = event.words() {
                         self.model.warn(words);
@@ -39,6 +41,7 @@ impl Live {
                 }
                 _ => {}
             }
+            self.tell_arm(&stamped.event);
             self.capture.tell(&stamped.event, self.clock.instant_of(stamped.time));
             lost.extend(self.filming.tell(&stamped.event));
             if let Some(comparison) = &self.comparison {
@@ -46,6 +49,7 @@ impl Live {
             }
             self.write_log(|log| log.append(stamped));
         }
+        self.order_arm();
         self.show_participant();
         if let Some(last) = events.last() {
             let by_gaze = events.iter().all(|stamped| stamped.event.is_sample());
@@ -76,6 +80,18 @@ impl Live {
         told.into_iter().for_each(|event| self.input(event));
         self.record_films(lost);
         self.ask_participant();
+    }
+
+    /// Tells the wizard how far a real arm is.
+    fn tell_arm_stage(&mut self, stage: ArmStage, found: &str) {
+        let words = format!("arm: {}", event_words::arm_stage(stage, found));
+        let has_begun = matches!(self.engine.session().phase, TrialPhase::Running | TrialPhase::Paused);
+        match stage {
+            ArmStage::Lost | ArmStage::Off | ArmStage::Stopped if has_begun => {
+                self.model.say(NoticeLevel::Alarm, words);
+            }
+            _ => self.model.say(NoticeLevel::Done, words),
+        }
     }
 
     /// Records what happened to films; the wizard is warned of lost ones.
@@ -109,8 +125,9 @@ impl Live {
         }
     }
 
-    /// Flushes the log, and moves the robot's hand on the participant's display.
+    /// Flushes the log, moves the robot's hand on the participant's display, and repeats the order for a real arm.
     pub(super) fn flush(&mut self) {
+        self.order_arm();
         self.move_robot();
         self.flush_log();
     }
@@ -194,6 +211,7 @@ impl Live {
         self.model.say(NoticeLevel::Alarm, format!("session over, the recording ends here: {reason}{saved}"));
         self.failed = Some(error);
         self.dirty = true;
+        self.tell_arm(&Event::RobotStopped);
         for event in [Event::RobotStopped, Event::SessionEnded] {
             // The result is ignored: events after the failure cannot be recorded, and a robot that is stopped already
             // refuses to stop.

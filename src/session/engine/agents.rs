@@ -20,14 +20,15 @@ use crate::{Event, SessionSpec, TimestampedEvent, offers};
 use tomcom_arm::body::SimulatedArm;
 #[cfg(feature = "physics")]
 use tomcom_arm::reaching::ReachingBehaviour;
+use tomcom_arm::real_arm::ArmOrder;
 use tomcom_arm::worker::RobotTaskExecutor;
 use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::offer::{OfferedAdvice, OfferedCommunication};
 use tomcom_core::communication::recommendation::SignalReason;
-use tomcom_core::kitchen::{Agent, AspectId, ButtonId, Kitchen, KitchenChange};
+use tomcom_core::kitchen::{Agent, AspectId, ButtonId, Kitchen, KitchenChange, Press};
 use tomcom_core::measures::sequences::FALSE_BELOW;
-use tomcom_core::robot::RobotEvent;
+use tomcom_core::robot::{ArmStage, RobotEvent};
 use tomcom_people::participant::SimulatedParticipant;
 use tomcom_people::participant::eyes::GazeDropoutSchedule;
 use tomcom_people::participant::population::Experience;
@@ -65,6 +66,7 @@ pub(super) fn trial_robot(kitchen: &Kitchen, spec: &SessionSpec, trial: u64) -> 
     match spec.robot.arm {
         ArmKind::Timed => robot,
         ArmKind::Physics => with_physics(robot, kitchen, spec, trial),
+        ArmKind::Ur(_) => robot.with_real_arm(),
     }
 }
 
@@ -83,6 +85,12 @@ fn with_physics(_: RobotTaskExecutor, _: &Kitchen, _: &SessionSpec, _: u64) -> R
 }
 
 impl SessionEngine {
+    /// What a real arm is to do now; `None` for other arms. It stands unless the trial runs.
+    pub fn arm_order(&self) -> Option<ArmOrder> {
+        let order = self.robot.order()?;
+        Some(ArmOrder { stands: order.stands || !self.session().is_running(), ..order })
+    }
+
     /// For experiments with the robot's arm.
     pub fn robot(&mut self) -> &mut RobotTaskExecutor {
         &mut self.robot
@@ -140,6 +148,29 @@ impl SessionEngine {
                 None
             }
             Event::RobotSkipped { .. } => self.robot.skip(now),
+            Event::RobotMoves(sample) => {
+                self.robot.arm_moves(sample.phase);
+                None
+            }
+            Event::RobotSafety { .. } | Event::RobotStage { .. } => {
+                let robot = &self.follower.session.robot;
+                let is_ready = matches!(robot.arm.stage, Some((ArmStage::Ready, _)));
+                self.robot.arm_changes(is_ready, robot.arm.mode, robot.stopped)
+            }
+            Event::Press { agent: Agent::Robot, .. } => {
+                if let KitchenChange::Press { press: Press { button, .. }, .. }
+                | KitchenChange::UncountedPress { button, .. } = *change
+                {
+                    self.robot.arm_pressed(button);
+                }
+                None
+            }
+            Event::RobotAborts { button, reason } if reason.is_of_physics() => {
+                if let Some(button) = kitchen.button_named(Agent::Robot, button) {
+                    self.robot.arm_failed(now, button);
+                }
+                None
+            }
             Event::RobotDriven { .. } => {
                 let button = self.session().robot.driven_to;
                 button.and_then(|button| self.robot.drive(button))

@@ -105,7 +105,11 @@ impl FileError {
 
     /// A session or a recording needs an optional part which this build lacks.
     pub fn not_built(what: &Path, missing: MissingFeature) -> FileError {
-        let instead = if missing.0 == Feature::Physics { "; or, for a new session, --arm timed" } else { "" };
+        let instead = if matches!(missing.0, Feature::Physics | Feature::Ur) {
+            "; or, for a new session, --arm timed"
+        } else {
+            ""
+        };
         let remedy = format!("{}{instead}", missing.remedy());
         FileError::from_finding(
             what,

@@ -12,7 +12,7 @@ use crate::questionnaire::AnswerValue;
 use crate::tracker::{TrackerEvent, TrackerRecording};
 use crate::tutorial::TutorialEvent;
 use crate::wall_display::{AnswerDevice, DisplayEvent};
-use crate::{Event, TimelineEvent, TimestampedEvent, TrialPhase};
+use crate::{ArmStatus, Event, TimelineEvent, TimestampedEvent, TrialPhase};
 use tomcom_core::base::text::{count, printable};
 use tomcom_core::communication::concept::{BenefitUnit, ConceptName};
 use tomcom_core::communication::offer::OfferedAdvice;
@@ -22,7 +22,7 @@ use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::ErrorCause;
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::mind::{AspectBelief, AspectEstimate, RecordedBelief, RecordedEstimate};
-use tomcom_core::robot::SafetyMode;
+use tomcom_core::robot::{ArmStage, SafetyMode};
 
 pub const HEADING: &str = " trial time  what happened";
 
@@ -81,6 +81,8 @@ pub fn line(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<St
             format!("robot's arm: {}", arm_stopped(*mode, *force_n, *joint))
         }
         Event::RobotTouched { force_n } => format!("robot's arm: contact with a person, {force_n:.0} N"),
+        Event::RobotStage { stage, found } => format!("robot's arm: {}", arm_stage(*stage, found)),
+        Event::RobotConfirmed { stage } => format!("the wizard {}", stage.asks().unwrap_or("confirms")),
         Event::RobotHeld { .. } => "robot held by the wizard before its next press".to_string(),
         Event::RobotReleased { .. } => "robot released by the wizard".to_string(),
         Event::RobotSkipped { .. } => "the wizard skips the robot's press".to_string(),
@@ -251,6 +253,29 @@ pub fn noted_words(note: &str, observer: Option<&str>) -> String {
     }
 }
 
+/// Why the arm stands that the wizard did not stop.
+pub fn why_stopped(arm: &ArmStatus) -> String {
+    match arm.unready().filter(|_| !arm.mode.is_stopped()) {
+        Some((stage, found)) => arm_stage(stage, found),
+        None => arm_stopped(arm.mode, arm.stopped_by_n, None),
+    }
+}
+
+/// How far a real arm is with being set up, and what was found.
+pub fn arm_stage(stage: ArmStage, found: &str) -> String {
+    let words = match stage {
+        ArmStage::Lost => "no connection",
+        ArmStage::Off => "no power",
+        ArmStage::Starts => "starts",
+        ArmStage::Untried => "waits for its dry run",
+        ArmStage::DryRun => "dry run",
+        ArmStage::Tried => "dry run done",
+        ArmStage::Ready => "ready",
+        ArmStage::Stopped => "does not run",
+    };
+    if found.is_empty() { words.to_string() } else { format!("{words}: {found}") }
+}
+
 fn noted(event: &Event) -> (&'static str, String) {
     match event {
         Event::SignalShown { by, signal, .. } => (wording::sender(*by), wording::signal(signal)),
@@ -259,6 +284,7 @@ fn noted(event: &Event) -> (&'static str, String) {
         Event::RobotStopped => ("wizard", "stopped the robot".to_string()),
         Event::RobotSafety { mode, force_n, joint } => ("robot", arm_stopped(*mode, *force_n, *joint)),
         Event::RobotTouched { force_n } => ("robot", format!("contact with a person, {force_n:.0} N")),
+        Event::RobotStage { stage, found } => ("robot", arm_stage(*stage, found)),
         Event::RobotResumed => ("wizard", "resumed the robot".to_string()),
         Event::RobotHeld { .. } => ("wizard", "held the robot".to_string()),
         Event::RobotReleased { .. } => ("wizard", "released the robot".to_string()),

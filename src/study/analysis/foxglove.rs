@@ -108,10 +108,11 @@ impl McapMessageConverter {
                 frame(now, &link.name, [at.x, at.y, at.z], [turned.i, turned.j, turned.k, turned.w])
             })
             .collect();
-        frames.push(frame(now, "hand", sample.hand_m, [0.0, 0.0, 0.0, 1.0]));
-        let arm = json!({
-            "timestamp": time(now), "phase": sample.phase, "force_n": sample.force_n, "hand_away_m": sample.hand_away_m,
-        });
+        frames.extend(sample.hand_m.map(|hand_m| frame(now, "hand", hand_m, [0.0, 0.0, 0.0, 1.0])));
+        let mut arm = json!({ "timestamp": time(now), "phase": sample.phase, "force_n": sample.force_n });
+        if let Some(away_m) = sample.hand_away_m {
+            arm["hand_away_m"] = json!(away_m);
+        }
         [
             (JOINTS, json!({ "timestamp": time(now), "joints": joints })),
             (FRAMES, json!({ "transforms": frames })),

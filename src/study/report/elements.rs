@@ -151,5 +151,6 @@ pub(super) fn arm(kind: ArmKind) -> &'static str {
     match kind {
         ArmKind::Timed => "timed",
         ArmKind::Physics => "simulated with contact forces",
+        ArmKind::Ur(_) => "a real UR5",
     }
 }

@@ -85,7 +85,7 @@ impl CsvRow for TrialStatistics {
             "left_out", "", format!("reason for leaving the trial out; {GUARDED}") => t.left_out.as_ref();
             "ended", "", "reason of the trial's end: set number of presses, time or orders; early: wizard or aborted; \
                 empty: incomplete recording" => t.ended.map(TrialEndReason::name);
-            "arm", "", "robot arm: timed (random press durations) or physics (simulated with contact forces)"
+            "arm", "", "robot arm: timed (random press durations), physics (simulated with contact forces) or ur (a real UR5)"
                 => t.arm.name();
             "human_presses", "presses", "human presses while the trial ran" => t.human_presses;
             "robot_presses", "presses", "robot presses while the trial ran" => t.robot_presses;
@@ -113,8 +113,8 @@ impl CsvRow for TrialStatistics {
             "protective_stops", "stops", "protective stops after a contact; this and the next five columns are empty \
                 for a timed arm" => t.robot.arm.as_ref().map(|arm| arm.protective_stops);
             "faults", "stops", "stops because a joint did not follow" => t.robot.arm.as_ref().map(|arm| arm.faults);
-            "contacts", "contacts", "contacts of a person with the arm, with or without a protective stop"
-                => t.robot.arm.as_ref().map(|arm| arm.contacts);
+            "contacts", "contacts", "contacts of a person with the arm, with or without a protective stop; empty for a \
+                real arm" => t.robot.arm.as_ref().filter(|_| !t.arm.is_real()).map(|arm| arm.contacts);
             "peak_force_n", "N", "largest contact force; empty without contact"
                 => t.robot.arm.as_ref().and_then(|arm| arm.peak_force_n);
             "reduced_s", "s", "time at reduced speed because of a hand near the arm, on the trial's clock"

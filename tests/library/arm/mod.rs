@@ -5,6 +5,7 @@
 mod contacts;
 mod presses;
 mod reach;
+mod real;
 mod sessions;
 
 use std::sync::LazyLock;

@@ -1,12 +1,12 @@
 //! Notices, alarms, notes and ages on the screen.
 
 use crossterm::event::KeyCode;
-use tomcom::console::console_model::{LslStatus, RerunStreamStatus};
+use tomcom::console::console_model::{Dialog, LslStatus, RerunStreamStatus};
 use tomcom::console::key_action::KeyLayer;
 use tomcom::console::preflight::GazePairing;
 use tomcom::console::preflight::checks;
-use tomcom::console::{ConsoleMessage, KeyBindings, KeyFileBindings, update};
-use tomcom_core::robot::SafetyMode;
+use tomcom::console::{ConsoleCommand, ConsoleMessage, KeyBindings, KeyFileBindings, update};
+use tomcom_core::robot::{ArmStage, SafetyMode};
 use tomcom_session::TimelineEvent;
 use tomcom_session::preflight_checks::PreflightVerdict;
 use tomcom_session::tracker::TrackerEvent;
@@ -279,6 +279,40 @@ fn an_arm_that_stopped_itself_is_told_for_as_long_as_it_stands() {
     stage.at(60.0, Event::RobotTouched { force_n: 20.0 });
     stage.shows_everywhere(&["Arm stopped: protective stop: contact with a person, 126 N; ^r resumes the arm"]);
     stage.at(61.0, Event::RobotResumed);
+    stage.hides((120, 40), &["Arm stopped"]);
+}
+
+/// What a real arm waits for, and the key for it, are told before the trial; why it stands, in the trial.
+#[test]
+fn a_real_arm_says_what_it_waits_for() {
+    let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
+    let address = std::net::IpAddr::from([192, 168, 1, 10]);
+    stage.session.spec.robot.arm = ArmKind::Ur(address);
+    let (kitchen, spec) = (stage.session.kitchen.clone(), stage.session.spec.clone());
+    stage.model.keys = console_model(&kitchen, &spec, (120, 40)).keys;
+    let robot = |stage: &Stage| {
+        let check =
+            checks(&stage.session, &stage.model).into_iter().find(|check| check.name == "robot").expect("robot");
+        (check.found, check.remedy.unwrap_or_default())
+    };
+    assert_eq!(robot(&stage).0, "the arm's controller at 192.168.1.10 has not answered yet");
+    let told = |stage, found: &str| Event::RobotStage { stage, found: found.to_string() };
+    stage.at(1.0, told(ArmStage::Off, ""));
+    stage.shows_everywhere(&["no power", "^y goes on"]);
+    assert_eq!(robot(&stage).1, "^y switches the arm on and opens its brakes: nobody is near the arm");
+    // The key works where the checks are listed, too.
+    stage.key(KeyCode::Char('.'));
+    assert_eq!(stage.model.dialog, Some(Dialog::Preflight));
+    let confirmed = Event::RobotConfirmed { stage: ArmStage::Off };
+    assert_eq!(stage.control('y'), Some(ConsoleCommand::Input(confirmed)));
+    stage.at(2.0, told(ArmStage::Ready, ""));
+    assert_eq!(robot(&stage).0, "the robot is ready");
+    stage.model.dialog = None;
+    stage.at(3.0, Event::TrialStarted);
+    stage.at(4.0, told(ArmStage::Lost, "the cable is out"));
+    stage.shows_everywhere(&["Arm stopped: no connection: the cable is out; ^r resumes the arm"]);
+    stage.shows((120, 40), &["ARM: NO CONNECTION", "^r resume"]);
+    stage.at(5.0, Event::RobotResumed);
     stage.hides((120, 40), &["Arm stopped"]);
 }
 

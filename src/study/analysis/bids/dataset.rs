@@ -153,7 +153,7 @@ fn session_columns<'a>() -> Vec<TableColumn<BidsSession<'a>>> {
         "period", "", "Number of the trial in the plan, from 1" => row.step().and_then(|step| step.period);
         "attempt", "", "Number of the attempt, from 1" => row.step().map(|step| step.attempt);
         "gaze", "", "Where gaze came from" => events::name(&row.session.spec.participant.gaze);
-        "arm", "", "Kind of the robot's arm" => events::name(&row.session.spec.robot.arm);
+        "arm", "", "Kind of the robot's arm" => row.session.spec.robot.arm.name();
         "trial_time", "s", "Length of the trial by its own clock"
             => Some(row.session.trial_clock(row.session.time)).filter(|clock| *clock > SessionTime::ZERO).map(seconds);
         "ended", ENDS, "Why the trial ended; n/a: it did not" => row.ended.map(TrialEndReason::name);

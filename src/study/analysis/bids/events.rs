@@ -187,6 +187,8 @@ impl EventCells {
                 (self.what, self.force_n, self.value) = (name(mode), *force_n, joint.map(f64::from));
             }
             Event::RobotTouched { force_n } => self.force_n = Some(*force_n),
+            Event::RobotStage { stage, .. } => self.what = name(stage),
+            Event::RobotConfirmed { stage } => (self.agent, self.what) = ("wizard".to_string(), name(stage)),
             Event::RobotStopped | Event::RobotResumed => self.agent = "wizard".to_string(),
             Event::RobotHeld { by } | Event::RobotReleased { by } | Event::RobotSkipped { by } => self.agent = name(by),
             Event::RobotDriven { by, button } => (self.agent, self.button) = (name(by), button.clone()),

@@ -523,9 +523,9 @@ fn arm_columns<'a>() -> Vec<TableColumn<LoggedSample<'a, ArmSample>>> {
         "joint_5", "rad", "Angle of the fifth joint" => row.sample.joints[4];
         "joint_6", "rad", "Angle of the sixth joint" => row.sample.joints[5];
         "force", "N", "The greatest contact force since the sample before" => row.sample.force_n;
-        "hand_x", "m", "The middle of the participant's hand, in the frame of the arm's base" => row.sample.hand_m[0];
-        "hand_y", "m", "The same, y" => row.sample.hand_m[1];
-        "hand_z", "m", "The same, z" => row.sample.hand_m[2];
+        "hand_x", "m", "The middle of the participant's hand, in the frame of the arm's base" => row.sample.hand_m.map(|at_m| at_m[0]);
+        "hand_y", "m", "The same, y" => row.sample.hand_m.map(|at_m| at_m[1]);
+        "hand_z", "m", "The same, z" => row.sample.hand_m.map(|at_m| at_m[2]);
         "hand_distance", "m", "Distance of the participant's hand from the arm" => row.sample.hand_away_m;
         "seq", "", "Number of the sample in the log" => row.logged.seq;
     }

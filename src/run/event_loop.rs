@@ -15,6 +15,7 @@ use crate::console::lists::StartPrompt;
 use crate::console::view::theme::Theme;
 use crate::console::{ConsoleMessage, ConsoleModel};
 use crate::run::terminal::TerminalScreen;
+use tomcom_devices::button_box::ButtonBoxMessage;
 use tomcom_devices::gaze_input::TrackerMessage;
 use tomcom_session::Session;
 
@@ -42,6 +43,7 @@ pub(super) enum LoopEvent {
     TargetDue,
     /// An input from the participant's page.
     Page(PageInput),
+    ButtonBox(ButtonBoxMessage),
     Advice(AssistantNews),
     /// An observer's remark. A shell that records nothing drops it, which tells the observer so.
     Remark(Remark),
@@ -187,6 +189,7 @@ async fn next_event<S: ConsoleShell>(shell: &mut S, station: &mut OperatorStatio
         () = until(due.engine) => LoopEvent::EngineDue,
         () = until(due.target) => LoopEvent::TargetDue,
         Some(input) = station.display.next() => LoopEvent::Page(input),
+        Some(message) = station.button_box.next() => LoopEvent::ButtonBox(message),
         Some(advice) = shell.advice() => LoopEvent::Advice(advice),
         Some(remark) = station.observers.next() => LoopEvent::Remark(remark),
         _ = ticks.pointer.tick(), if with_pointer => LoopEvent::PointerTick,

@@ -1,4 +1,4 @@
-//! The operator's station: terminal, eye tracker, the participant's display, and termination signals. The station is opened
+//! The operator's station: terminal, eye tracker, the participant's display and button box, and termination signals. The station is opened
 //! once for all recordings of a participant's series.
 
 use std::io;
@@ -46,8 +46,10 @@ mod station_display;
 mod station_observers;
 
 mod lsl_output;
+mod station_button_box;
 
 use lsl_output::LslOutput;
+use station_button_box::StationButtonBox;
 use station_display::StationDisplay;
 pub(super) use station_display::{PageInput, lost_since, take_consent_input};
 #[cfg(not(feature = "display"))]
@@ -63,6 +65,7 @@ pub(super) struct OperatorStation {
     pub input: OperatorInput,
     pub tracker: GazeTracker,
     pub display: StationDisplay,
+    pub button_box: StationButtonBox,
     pub observers: StationObservers,
     pub lsl: LslOutput,
     /// Films of recordings that are over.
@@ -123,7 +126,9 @@ impl OperatorStation {
         let tracker = GazeTracker::open(spec, kitchen, &lsl).await?;
         let display = StationDisplay::open(spec).await?;
         let observers = StationObservers::open(observe).await?;
-        Ok(OperatorStation { tracker, display, observers, lsl, ..OperatorStation::without_devices(&spec.console)? })
+        let station = OperatorStation::without_devices(&spec.console)?;
+        let button_box = StationButtonBox::open(spec, kitchen);
+        Ok(OperatorStation { tracker, display, button_box, observers, lsl, ..station })
     }
 
     /// Takes over the terminal, without devices.
@@ -137,8 +142,9 @@ impl OperatorStation {
         let jobs = JobControl::start().map_err(TerminalError)?;
         let input = OperatorInput { terminal, jobs, end: Box::pin(asked_to_end()) };
         let (tracker, display, lsl) = (GazeTracker::default(), StationDisplay::default(), LslOutput::default());
-        let observers = StationObservers::default();
-        Ok(OperatorStation { screen, theme, input, tracker, display, observers, lsl, films: RecordedFilms::default() })
+        let (button_box, observers) = (StationButtonBox::default(), StationObservers::default());
+        let films = RecordedFilms::default();
+        Ok(OperatorStation { screen, theme, input, tracker, display, button_box, observers, lsl, films })
     }
 
     /// Draws this in the terminal, and shows it to the observers.

@@ -1,4 +1,4 @@
-//! Checks of the participant's page, of the gaze source and of the Lab Streaming Layer for `tomcom doctor`, where the
+//! Checks of the participant's page and button box, of the gaze source and of the Lab Streaming Layer for `tomcom doctor`, where the
 //! session uses them.
 
 use std::net::{SocketAddr, TcpListener, UdpSocket};
@@ -8,8 +8,9 @@ use tomcom_core::base::text::printable;
 use tomcom_core::gaze::tags::TagError;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_devices::lsl::{self, DiscoveredLslStream};
-use tomcom_devices::{gaze_file, pupil};
+use tomcom_devices::{button_box, gaze_file, pupil};
 use tomcom_session::SessionSpec;
+use tomcom_session::button_box::REMEDY;
 use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict, recorded_gaze};
 use tomcom_session::settings::{GazeSource, ParticipantKind, ParticipantSpec};
 use tomcom_session::tracker::TrackerSpec;
@@ -27,6 +28,22 @@ pub(super) fn display(spec: &SessionSpec) -> Option<PreflightCheck> {
         Ok(_) => PreflightCheck::ok("wall display", format!("{address} is free for the participant's page")),
         Err(reason) => {
             PreflightCheck::new("wall display", PreflightVerdict::Failed, format!("{address}: {reason}"), remedy)
+        }
+    })
+}
+
+pub(super) fn button_box(spec: &SessionSpec) -> Option<PreflightCheck> {
+    let path = spec.participant.button_box.as_ref()?;
+    Some(match button_box::open(path) {
+        Ok(_) => PreflightCheck::ok(
+            "button box",
+            format!("{path} can be read; the console tells each press before the trial"),
+        ),
+        Err(reason) => {
+            let here = button_box::lines_here();
+            let here = if here.is_empty() { "none".to_string() } else { here.join(", ") };
+            let found = format!("{path}: {reason}; serial lines of this computer: {here}");
+            PreflightCheck::new("button box", PreflightVerdict::Failed, found, REMEDY)
         }
     })
 }

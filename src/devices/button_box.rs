@@ -96,7 +96,12 @@ fn listen(port: &SerialPort, lines: &mut PressLines, news: &Sender<ButtonBoxMess
         let read = match port.read(&mut bytes) {
             Ok(0) => return Some(io::Error::new(ErrorKind::UnexpectedEof, "the line has ended")),
             Ok(read) => read,
-            Err(error) if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => 0,
+            // Another program that reads the same line can have taken what was there.
+            Err(error)
+                if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted | ErrorKind::WouldBlock) =>
+            {
+                0
+            }
             Err(error) => return Some(error),
         };
         for message in lines.take(&bytes[..read], Instant::now()) {

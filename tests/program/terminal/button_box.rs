@@ -9,17 +9,22 @@ use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 
 use crate::pseudo_terminal::Terminal;
 
-/// The box's end of the line. Its path stays the same when it is plugged in again, as those below /dev/serial/by-id do.
-struct ButtonBox(File);
+/// The box's end of the line, with its path, which is the same when the box is plugged in again, as those below
+/// /dev/serial/by-id are.
+struct ButtonBox(File, PathBuf);
 
 impl ButtonBox {
     fn plugged_in(path: &Path) -> ButtonBox {
         let line = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC).expect("a pseudo terminal");
         grantpt(&line).and_then(|()| unlockpt(&line)).expect("it opens");
         let name = ptsname(&line, Vec::new()).expect("a name").into_string().expect("UTF-8");
-        let _ = fs::remove_file(path);
         symlink(name, path).expect("a path");
-        ButtonBox(File::from(line))
+        ButtonBox(File::from(line), path.to_path_buf())
+    }
+
+    /// The path goes first: its terminal's number is given to the next one that is opened.
+    fn unplugged(self) {
+        fs::remove_file(self.1).expect("removed");
     }
 
     fn sends(&self, bytes: &[u8]) {
@@ -74,7 +79,7 @@ fn presses_of_a_box_count_what_is_none_is_told_and_a_box_plugged_in_again_goes_o
     terminal.wait("a press by number", || terminal.count(&press_of("cooking_pot")) == 1);
     terminal.see("2/304");
 
-    drop(button_box);
+    button_box.unplugged();
     terminal.see("NO BUTTONS");
     terminal.see("the button box is not there, and connects by itself once it is");
     let button_box = ButtonBox::plugged_in(&path);

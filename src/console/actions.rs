@@ -50,7 +50,13 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
         KeyAction::Press(button) => {
             let why = wording::no_effect(&session.kitchen, session.state, button).unwrap_or_default();
             let button = session.kitchen.button(Agent::Human, button).name.clone();
-            send(model, session, Event::Press { agent: Agent::Human, button, at_ns: None }, NoticeLevel::Refused, &why)
+            send(
+                model,
+                session,
+                Event::Press { agent: Agent::Human, button, at_ns: None, button_box: false },
+                NoticeLevel::Refused,
+                &why,
+            )
         }
         KeyAction::TakeBack => send(
             model,

@@ -2,13 +2,14 @@
 //! ([`sight`]: what the page may see; `display`: the server with its page), the observers' page of
 //! the wizard's screen (`observers`), Rerun (`scene`: a session as entities;
 //! `rerun`, `stream`, `rrd`: viewers and files), programs that take the part of a concept or of the participant
-//! ([`external`]), cameras that film the room ([`film_recorder`]), and a simulated controller of a UR5 (`ur`).
+//! ([`external`]), a button box ([`button_box`]), cameras that film the room ([`film_recorder`]), and a simulated controller of a UR5 (`ur`).
 //!
 //! The crate knows nothing of the console and of studies.
 
 #![deny(unsafe_code)]
 
 mod arrival;
+pub mod button_box;
 pub mod child_process;
 mod compared_clock;
 pub mod connection_table;

@@ -64,6 +64,7 @@ pub fn examine(spec: &SessionSpec, kitchen: &Kitchen, out: &Path) -> DoctorRepor
     add("to record", [place].into_iter().chain(room).collect());
     add("for times in recordings", vec![wall_clock(), timer()]);
     add("for the participant's page", devices::display(spec).into_iter().collect());
+    add("for the participant's buttons", devices::button_box(spec).into_iter().collect());
     #[cfg(feature = "rerun")]
     add("for Rerun", vec![viewer()]);
     add("for films beside recordings", films::checks(spec.video.as_ref()));

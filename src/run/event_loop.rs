@@ -15,6 +15,7 @@ use crate::console::lists::StartPrompt;
 use crate::console::view::theme::Theme;
 use crate::console::{ConsoleMessage, ConsoleModel};
 use crate::run::terminal::TerminalScreen;
+use tomcom_devices::button_box::ButtonBoxMessage;
 use tomcom_devices::gaze_input::TrackerMessage;
 use tomcom_session::Session;
 
@@ -44,6 +45,7 @@ pub(super) enum LoopEvent {
     Page(PageInput),
     /// News of a real arm.
     Arm(ArmNews),
+    ButtonBox(ButtonBoxMessage),
     Advice(AssistantNews),
     /// An observer's remark. A shell that records nothing drops it, which tells the observer so.
     Remark(Remark),
@@ -190,6 +192,7 @@ async fn next_event<S: ConsoleShell>(shell: &mut S, station: &mut OperatorStatio
         () = until(due.target) => LoopEvent::TargetDue,
         Some(input) = station.display.next() => LoopEvent::Page(input),
         Some(news) = station.arm.next() => LoopEvent::Arm(news),
+        Some(message) = station.button_box.next() => LoopEvent::ButtonBox(message),
         Some(advice) = shell.advice() => LoopEvent::Advice(advice),
         Some(remark) = station.observers.next() => LoopEvent::Remark(remark),
         _ = ticks.pointer.tick(), if with_pointer => LoopEvent::PointerTick,

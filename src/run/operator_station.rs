@@ -1,4 +1,4 @@
-//! The operator's station: terminal, eye tracker, the participant's display, a real arm, and termination signals. The station is opened
+//! The operator's station: terminal, eye tracker, the participant's display and button box, a real arm, and termination signals. The station is opened
 //! once for all recordings of a participant's series.
 
 use std::io;
@@ -51,10 +51,12 @@ mod station_display;
 mod station_observers;
 
 mod lsl_output;
+mod station_button_box;
 
 use lsl_output::LslOutput;
 use station_arm::StationArm;
 pub(super) use station_arm::{ArmNews, ArmOrders};
+use station_button_box::StationButtonBox;
 use station_display::StationDisplay;
 pub(super) use station_display::{PageInput, lost_since, take_consent_input};
 #[cfg(not(feature = "display"))]
@@ -70,6 +72,7 @@ pub(super) struct OperatorStation {
     pub input: OperatorInput,
     pub tracker: GazeTracker,
     pub display: StationDisplay,
+    pub button_box: StationButtonBox,
     pub observers: StationObservers,
     pub arm: StationArm,
     pub lsl: LslOutput,
@@ -132,8 +135,9 @@ impl OperatorStation {
         let display = StationDisplay::open(spec).await?;
         let observers = StationObservers::open(observe).await?;
         let arm = StationArm::open(spec, kitchen)?;
+        let button_box = StationButtonBox::open(spec, kitchen);
         let bare = OperatorStation::without_devices(&spec.console)?;
-        Ok(OperatorStation { tracker, display, observers, arm, lsl, ..bare })
+        Ok(OperatorStation { tracker, display, button_box, observers, arm, lsl, ..bare })
     }
 
     /// Takes over the terminal, without devices.
@@ -147,8 +151,9 @@ impl OperatorStation {
         let jobs = JobControl::start().map_err(TerminalError)?;
         let input = OperatorInput { terminal, jobs, end: Box::pin(asked_to_end()) };
         let (tracker, display, lsl) = (GazeTracker::default(), StationDisplay::default(), LslOutput::default());
-        let (observers, arm, films) = (StationObservers::default(), StationArm::default(), RecordedFilms::default());
-        Ok(OperatorStation { screen, theme, input, tracker, display, observers, arm, lsl, films })
+        let (button_box, observers) = (StationButtonBox::default(), StationObservers::default());
+        let (arm, films) = (StationArm::default(), RecordedFilms::default());
+        Ok(OperatorStation { screen, theme, input, tracker, display, button_box, observers, arm, lsl, films })
     }
 
     /// Draws this in the terminal, and shows it to the observers.

@@ -116,6 +116,7 @@ impl SettingOverrides {
         participant.code = self.code.unwrap_or(std::mem::take(&mut participant.code));
         if let Some(kind) = self.participant {
             (participant.kind, participant.external) = (kind, None);
+            participant.button_box.take_if(|_| kind == ParticipantKind::Simulated);
         }
         let gaze = self.gaze.or(self.gaze_file.is_some().then_some(GazeSource::File));
         participant.gaze = match (gaze, self.participant, participant.gaze) {

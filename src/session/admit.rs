@@ -177,6 +177,7 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         | Event::Preflight { .. }
         | Event::Screen(_)
         | Event::Display(_)
+        | Event::ButtonBox(_)
         | Event::Film(_)
         | Event::Unblinded { .. }
         | Event::SignalDrawn { .. }

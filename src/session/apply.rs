@@ -66,9 +66,13 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
         Event::FocusLost | Event::FocusRegained => session.note_event(now, &stamped.event),
         Event::Gaze(sample) => take_sample(session, now, *sample),
         Event::Tracker(event) => session.tracker.apply(now, event),
+        Event::ButtonBox(event) => session.button_box.apply(now, event),
         Event::Calibration(event) => gaze_check::apply(session, now, event),
-        Event::Press { agent, button, .. } => {
-            let button = named.button(*agent, button)?;
+        Event::Press { agent, button: name, button_box, .. } => {
+            let button = named.button(*agent, name)?;
+            if *button_box {
+                session.button_box.note_press(now, name);
+            }
             change = press(session, now, *agent, button, &mut effects);
         }
         Event::OrderShown { order, dish } => {

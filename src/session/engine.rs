@@ -237,7 +237,7 @@ impl SessionEngine {
             Some(ParticipantAction::Press { button, belief }) => {
                 let button = self.session().kitchen.button(Agent::Human, button).name.clone();
                 self.record_own(now, Event::ParticipantBelieves(belief));
-                self.record_own(now, Event::Press { agent: Agent::Human, button, at_ns: None });
+                self.record_own(now, Event::Press { agent: Agent::Human, button, at_ns: None, button_box: false });
             }
         }
         self.let_hand_follow(now);

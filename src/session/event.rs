@@ -5,6 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::button_box::ButtonBoxEvent;
 use crate::external::ExternalEvent;
 use crate::film::FilmEvent;
 use crate::gaze_check::GazeCheckEvent;
@@ -73,9 +74,13 @@ pub enum Event {
     Press {
         agent: Agent,
         button: String,
-        /// By the display's synchronised clock: slightly before the event's time, at which the session received it.
+        /// When the button went down by the display's synchronised clock, or when the button box's line arrived: slightly
+        /// before the event's time, at which the session received it.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         at_ns: Option<SessionTime>,
+        /// Whether it came from the button box, and not from the page or the console.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        button_box: bool,
     },
     OrderShown {
         order: String,
@@ -206,6 +211,8 @@ pub enum Event {
     },
     /// Witness.
     Display(DisplayEvent),
+    /// Witness: other than a press.
+    ButtonBox(ButtonBoxEvent),
     /// Witness: what happens to a film that the program records.
     Film(FilmEvent),
     /// Witness: the visible content of the wizard's screen changes.
@@ -260,10 +267,12 @@ impl Event {
             Event::Preflight { .. } => &["checks"],
             Event::External(_) => &["name", "found", "answer"],
             Event::Advised(advice) if advice.words.is_some() => &["words"],
-            Event::Tracker(TrackerEvent::Connected { .. }) => &["device"],
+            Event::Tracker(TrackerEvent::Connected { .. }) | Event::ButtonBox(ButtonBoxEvent::Connected { .. }) => {
+                &["device"]
+            }
             Event::Tracker(TrackerEvent::Lost { .. }) => &["reason"],
-            Event::Film(FilmEvent::Lost { .. }) => &["reason"],
-            Event::RobotStage { .. } => &["found"],
+            Event::Film(FilmEvent::Lost { .. }) | Event::ButtonBox(ButtonBoxEvent::Lost { .. }) => &["reason"],
+            Event::ButtonBox(ButtonBoxEvent::Refused { .. }) | Event::RobotStage { .. } => &["found"],
             Event::Tracker(TrackerEvent::OtherSurfaces { .. }) => &["names"],
             Event::Tracker(TrackerEvent::SeveralStreams { .. }) => &["streams"],
             Event::Protocol(ProtocolEvent::ItemAnswered { .. }) => &["answer"],
@@ -329,6 +338,7 @@ pub const MEANINGS: &[(&str, &str)] = &[
         "belief_estimated",
         "The participant's belief before a press was estimated; the probabilities stand in the table of beliefs",
     ),
+    ("button_box", "The participant's button box was connected or lost, or sent what is no press"),
     ("calibration", "A step of the gaze accuracy check"),
     ("clock_jumped", "The wall clock moved against session time: the computer stood still, or its clock was set"),
     ("display", "A report of the participant's display"),

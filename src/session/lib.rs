@@ -6,6 +6,7 @@
 //! - Events and state: [`event`], `session_state`, [`header`].
 //! - Preconditions and effects of events: [`admit`] and [`mod@apply`]; of one feature each: [`gaze_check`],
 //!   [`gaze_samples`], [`protocol`], [`tutorial`], [`probes`] with [`probe_settings`] and [`probe_sampling`], [`offers`], [`proposals`].
+//! - What a device of the participant tells: [`button_box`].
 //! - Concepts and participants of other people, which answer over a connection: [`external`].
 //! - What runs and reads sessions: [`engine`], [`headless`], [`log`], [`files`], [`replay`], [`verify`].
 //! - What is computed beside a session: [`follower`] (judgements, the belief estimate), [`advisor`] (advice), [`watcher`]
@@ -16,6 +17,7 @@
 pub mod admit;
 pub mod advisor;
 pub mod apply;
+pub mod button_box;
 pub mod engine;
 pub mod error_list;
 pub mod event;

@@ -2,12 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::Session;
 use crate::external::MindRole;
 use crate::gaze_samples::{DUPLICATE, MALFORMED, TOO_FREQUENT, faults};
 use crate::settings::{Condition, GazeSource, ParticipantKind};
 use crate::stream_settings::LslGazeSpec;
-use crate::tracker::TrackerConnection;
+use crate::tracker::DeviceConnection;
+use crate::{Session, button_box};
 use tomcom_core::base::text::count;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::calibration::{GOOD_DEG, USABLE_DEG};
@@ -156,6 +156,7 @@ pub fn participant(
     let concept = session.spec.external_concept();
     checks.extend(concept.map(|mind| external_mind(session, MindRole::Concept, &mind.external)));
     checks.extend(tutorial(session));
+    checks.extend(button_box::check(session, now));
     match spec.gaze {
         GazeSource::Simulated => checks.push(PreflightCheck::ok("gaze", "simulated gaze: it comes with the trial")),
         GazeSource::None => checks.push(PreflightCheck::ok("gaze", "this session uses no gaze")),
@@ -310,10 +311,10 @@ fn tracker(session: &Session) -> PreflightCheck {
     let spec = &session.spec.tracker;
     let name = "eye tracker";
     match (&session.tracker.link, session.tracker.sees_display) {
-        (TrackerConnection::Connected { device }, Some(true)) => {
+        (DeviceConnection::Connected { device }, Some(true)) => {
             PreflightCheck::ok(name, format!("{device}, sees the display"))
         }
-        (TrackerConnection::Connected { device }, _) => {
+        (DeviceConnection::Connected { device }, _) => {
             let others: Vec<String> =
                 session.tracker.other_surfaces.iter().map(|other| format!("\"{other}\"")).collect();
             let (found, remedy) = match others.first() {
@@ -350,9 +351,9 @@ fn stream(session: &Session) -> PreflightCheck {
         return PreflightCheck::new("eye tracker", PreflightVerdict::Failed, found, remedy);
     }
     let found = match &session.tracker.link {
-        TrackerConnection::Connected { device } => return PreflightCheck::ok("eye tracker", device.clone()),
-        TrackerConnection::Lost { reason, .. } => reason.clone(),
-        TrackerConnection::Unknown => format!("no stream {wanted} is in the Lab Streaming Layer"),
+        DeviceConnection::Connected { device } => return PreflightCheck::ok("eye tracker", device.clone()),
+        DeviceConnection::Lost { reason, .. } => reason.clone(),
+        DeviceConnection::Unknown => format!("no stream {wanted} is in the Lab Streaming Layer"),
     };
     let remedy = "start the program that sends the stream, or set name, x, y and confidence under [lsl.gaze]; tomcom \
                   doctor lists streams and channels";

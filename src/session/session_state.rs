@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::button_box::ButtonBoxStatus;
 use crate::event::{Event, TrialEndReason};
 use crate::external::ExternalStatus;
 use crate::gaze_check::{AcceptedGazeCheck, RunningGazeCheck};
@@ -73,6 +74,7 @@ pub struct Session {
     pub excluded: Option<String>,
     pub gaze: GazeStatus,
     pub tracker: TrackerStatus,
+    pub button_box: ButtonBoxStatus,
     /// Running, or waiting for the wizard's decision.
     pub calibration: Option<RunningGazeCheck>,
     /// The last accepted one.
@@ -153,6 +155,7 @@ impl Session {
             excluded: None,
             gaze: GazeStatus::default(),
             tracker: TrackerStatus::default(),
+            button_box: ButtonBoxStatus::default(),
             calibration: None,
             calibrated: None,
             timeline: Vec::new(),

@@ -118,6 +118,7 @@ impl SessionSpec {
             let remedy = "gaze = \"mouse\", \"pupil\", \"file\", \"json\", \"lsl\" or \"none\"";
             return Err(SettingError::new("participant.gaze", found, remedy));
         }
+        self.participant.check_button_box()?;
         self.tracker.check(self.participant.gaze)?;
         self.console.check()?;
         self.display.check()?;
@@ -342,6 +343,9 @@ pub struct ParticipantSpec {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub gaze_from: Vec<IpAddr>,
     pub gaze_senders: GazeSenders,
+    /// Path of the serial line of a person's button box: "/dev/ttyACM0".
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub button_box: Option<String>,
     /// Command line or address of an external participant.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub external: Option<String>,
@@ -361,6 +365,7 @@ impl Default for ParticipantSpec {
             gaze_listen: LOCALHOST,
             gaze_from: Vec::new(),
             gaze_senders: GazeSenders::First,
+            button_box: None,
             external: None,
             population: None,
         }
@@ -368,6 +373,21 @@ impl Default for ParticipantSpec {
 }
 
 impl ParticipantSpec {
+    fn check_button_box(&self) -> Result<(), SettingError> {
+        let Some(path) = &self.button_box else { return Ok(()) };
+        let wrong = |found, remedy: &'static str| Err(SettingError::new("participant.button_box", found, remedy));
+        if path.trim().is_empty() || path.chars().any(char::is_control) {
+            return wrong(format!("button_box = {path:?}"), "the path of its serial line, such as \"/dev/ttyACM0\"");
+        }
+        match self.kind {
+            ParticipantKind::Keyboard | ParticipantKind::Display => Ok(()),
+            ParticipantKind::Simulated | ParticipantKind::External => wrong(
+                "a button box of a participant who has no hands".to_string(),
+                "kind = \"display\" or \"keyboard\"; or no button_box",
+            ),
+        }
+    }
+
     pub(crate) fn simulates_gaze(&self) -> bool {
         self.kind == ParticipantKind::Simulated && self.gaze == GazeSource::Simulated
     }
@@ -491,7 +511,7 @@ pub enum BellOccasion {
     Offer,
     /// In a trial, gaze stops coming.
     Gaze,
-    /// In a trial, the participant's page is lost.
+    /// In a trial, the participant's page or button box is lost.
     Display,
     /// A camera is lost.
     Film,

@@ -216,9 +216,9 @@ pub enum TrackerRecording {
     NotAnnotated,
 }
 
-/// To the tracker's program.
+/// To the tracker's program, or to the button box.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub enum TrackerConnection {
+pub enum DeviceConnection {
     /// No message has been received yet.
     #[default]
     Unknown,
@@ -233,7 +233,7 @@ pub enum TrackerConnection {
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrackerStatus {
-    pub link: TrackerConnection,
+    pub link: DeviceConnection,
     /// `None` if the tracker has not reported on the display.
     pub sees_display: Option<bool>,
     /// Surfaces that the tracker detects instead of the wall display.
@@ -262,10 +262,10 @@ impl TrackerStatus {
 
     pub(super) fn apply(&mut self, now: SessionTime, event: &TrackerEvent) {
         match event {
-            TrackerEvent::Connected { device } => self.link = TrackerConnection::Connected { device: device.clone() },
+            TrackerEvent::Connected { device } => self.link = DeviceConnection::Connected { device: device.clone() },
             TrackerEvent::Lost { reason } => {
                 self.losses += 1;
-                self.link = TrackerConnection::Lost { since: now, reason: reason.clone() };
+                self.link = DeviceConnection::Lost { since: now, reason: reason.clone() };
                 self.sees_display = None;
                 self.other_surfaces.clear();
             }

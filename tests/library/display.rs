@@ -2,8 +2,9 @@
 
 use std::time::Instant;
 
-use tomcom::run::live::display::{PageEvent, press};
+use tomcom::run::live::display::PageEvent;
 use tomcom_core::communication::signals;
+use tomcom_devices::display::PageInput;
 use tomcom_devices::sight::page_language::DisplayWords;
 use tomcom_devices::sight::{DisplayStage, TrialClockState, scene, sight, time_left};
 use tomcom_session::files::LanguageFile;
@@ -266,6 +267,7 @@ fn what_the_display_tells_is_recorded_and_verified() {
         agent: Agent::Human,
         button: button.to_string(),
         at_ns: Some(at(pressed_s)),
+        button_box: false,
     };
     let signal = Signal::Highlight("counter".to_string());
     for (seconds, event) in [
@@ -411,7 +413,7 @@ fn reasons(change: impl Fn(&mut DisplaySpec), buttons: &[&str]) -> Vec<Option<St
     let mut told = Vec::new();
     assert_eq!(engine.input(SessionTime::ZERO, Event::TrialStarted).refused, None);
     for (index, button) in buttons.iter().enumerate() {
-        let press = Event::Press { agent: Agent::Human, button: (*button).to_string(), at_ns: None };
+        let press = Event::Press { agent: Agent::Human, button: (*button).to_string(), at_ns: None, button_box: false };
         assert_eq!(engine.input(SessionTime(1_000_000 * (index as u64 + 1)), press).refused, None, "{button}");
         check(engine.session());
         let now = serde_json::to_value(sight(engine.session())).expect("a sight is JSON");
@@ -510,7 +512,8 @@ fn a_press_that_is_refused_names_its_button_in_signs_that_can_be_shown() {
     let files = files("sessions/default.toml");
     let session = Session::new(Arc::new(files.kitchen.kitchen), files.spec, 0);
     let refused = |button: &str| {
-        let PageEvent { event, notice } = press(button.to_string(), Instant::now(), &session, SessionTime::ZERO);
+        let input = PageInput::Press { button: button.to_string(), at: Instant::now() };
+        let PageEvent { event, notice } = PageEvent::from_input(input, &session, SessionTime::ZERO);
         assert!(event.is_none(), "{event:?}");
         notice.expect("a notice").1
     };

@@ -2,6 +2,7 @@
 
 mod arm;
 mod bids_export;
+mod button_box;
 mod cohort;
 mod connection_table;
 mod console;

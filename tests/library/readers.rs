@@ -68,6 +68,7 @@ fn input(reader: &str) -> Vec<u8> {
         "pupil_message" => file("tests/pupil/surfaces_wall.msgpack"),
         "pupil_frames" => b"\x01\x02ab\x02\x00\x00\x00\x00\x00\x00\x00\x03abc".to_vec(),
         "page_message" => br#"{"kind":"press","number":1,"button":"cut","at":12.5}"#.to_vec(),
+        "button_box" => "take rice\r\n12\ncutting_board\n".into(),
         "terminal" => "a\x1b[A\x1b[<35;12;3M\x1b[200~please call\x1b[201~\x1b[97:65;2:1u\x1b]11;?\x1b\\ß ".into(),
         other => panic!("no input for the reader {other}"),
     };

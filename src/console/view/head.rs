@@ -13,7 +13,7 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::robot::SafetyMode;
 use tomcom_session::history::wording;
 use tomcom_session::settings::{Condition, GazeSource};
-use tomcom_session::tracker::TrackerConnection;
+use tomcom_session::tracker::DeviceConnection;
 use tomcom_session::{Session, TrialPhase};
 
 /// A part of the head line: its text, its style, and its rank: those of the highest rank are left out first where there is
@@ -202,6 +202,7 @@ pub(super) fn healths(session: &Session, model: &ConsoleModel) -> Vec<(String, T
     if let Some((text, is_fine)) = model.display.as_ref().map(|display| display.line()) {
         healths.push((text, if is_fine { TextRole::Text } else { TextRole::Alarm }));
     }
+    healths.extend(button_box(session, model));
     healths.extend(model.films.as_ref().map(films));
     if let Some(RerunStreamStatus { dropped: dropped @ 1.., .. }) = &model.viewers {
         healths.push((format!("RERUN {dropped} ROWS DROPPED"), TextRole::Alarm));
@@ -222,6 +223,18 @@ fn robot(session: &Session) -> (String, TextRole) {
         (false, false) => ("robot ok", TextRole::Text),
     };
     (words.to_string(), role)
+}
+
+/// State of the participant's button box in words; `None` in a session without one.
+fn button_box(session: &Session, model: &ConsoleModel) -> Option<(String, TextRole)> {
+    session.spec.participant.button_box.as_ref()?;
+    Some(match &session.button_box.link {
+        DeviceConnection::Unknown => ("buttons idle".to_string(), TextRole::Quiet),
+        DeviceConnection::Connected { .. } => ("buttons ok".to_string(), TextRole::Text),
+        DeviceConnection::Lost { since, .. } => {
+            (format!("NO BUTTONS {:.0} s", model.now.secs_since(*since)), TextRole::Alarm)
+        }
+    })
 }
 
 /// State of the cameras in words.
@@ -248,15 +261,15 @@ fn gaze(session: &Session, model: &ConsoleModel) -> (String, TextRole) {
         return ("no gaze".to_string(), TextRole::Quiet);
     }
     match (&session.tracker.link, session.tracker.sees_display) {
-        (TrackerConnection::Lost { since, .. }, _) => {
+        (DeviceConnection::Lost { since, .. }, _) => {
             return (format!("NO TRACKER {:.0} s", model.now.secs_since(*since)), TextRole::Alarm);
         }
-        (TrackerConnection::Unknown, _)
+        (DeviceConnection::Unknown, _)
             if matches!(session.spec.participant.gaze, GazeSource::Pupil | GazeSource::Lsl) =>
         {
             return ("NO TRACKER".to_string(), TextRole::Alarm);
         }
-        (TrackerConnection::Connected { .. }, Some(false)) => return ("NO DISPLAY TAGS".to_string(), TextRole::Alarm),
+        (DeviceConnection::Connected { .. }, Some(false)) => return ("NO DISPLAY TAGS".to_string(), TextRole::Alarm),
         _ => {}
     }
     let usable = session.gaze.last.is_some_and(|(at, _)| model.now.secs_since(at) <= USABLE_S);

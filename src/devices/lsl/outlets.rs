@@ -421,7 +421,7 @@ impl LslSampleConverter {
             Event::RobotMoves(arm) => {
                 return vec![sample(LslOutlet::Arm, now, LslSampleValues::Numbers(arm.joints.to_vec()))];
             }
-            Event::Press { agent, button, at_ns } => {
+            Event::Press { agent, button, at_ns, .. } => {
                 let values = texts(press_texts(*agent, button, stamped, session, judged));
                 vec![sample(LslOutlet::Presses, at_ns.unwrap_or(now), values)]
             }

@@ -1,4 +1,4 @@
-//! Checks of the participant's page, of the gaze source, of a real arm and of the Lab Streaming Layer for `tomcom doctor`, where the
+//! Checks of the participant's page and button box, of the gaze source, of a real arm and of the Lab Streaming Layer for `tomcom doctor`, where the
 //! session uses them.
 
 use std::net::{SocketAddr, TcpListener, UdpSocket};
@@ -10,8 +10,9 @@ use tomcom_core::kitchen::Kitchen;
 use tomcom_devices::lsl::{self, DiscoveredLslStream};
 #[cfg(feature = "ur")]
 use tomcom_devices::ur::{driver::UrDriver, link, server::PORTS};
-use tomcom_devices::{gaze_file, pupil};
+use tomcom_devices::{button_box, gaze_file, pupil};
 use tomcom_session::SessionSpec;
+use tomcom_session::button_box::REMEDY;
 use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict, recorded_gaze};
 #[cfg(feature = "ur")]
 use tomcom_session::settings::{ArmKind, RobotSpec};
@@ -45,6 +46,22 @@ pub(super) fn arm(spec: &SessionSpec, kitchen: &Kitchen) -> Vec<PreflightCheck> 
     found.and_then(|runtime| runtime.block_on(link::examine(address, PORTS, driver))).unwrap_or_else(|why| {
         let remedy = "switch the controller on, and set its address under [robot]: arm = { ur = \"192.168.1.10\" }";
         vec![PreflightCheck::new("controller", PreflightVerdict::Failed, why, remedy)]
+    })
+}
+
+pub(super) fn button_box(spec: &SessionSpec) -> Option<PreflightCheck> {
+    let path = spec.participant.button_box.as_ref()?;
+    Some(match button_box::open(path) {
+        Ok(_) => PreflightCheck::ok(
+            "button box",
+            format!("{path} can be read; the console tells each press before the trial"),
+        ),
+        Err(reason) => {
+            let here = button_box::lines_here();
+            let here = if here.is_empty() { "none".to_string() } else { here.join(", ") };
+            let found = format!("{path}: {reason}; serial lines of this computer: {here}");
+            PreflightCheck::new("button box", PreflightVerdict::Failed, found, REMEDY)
+        }
     })
 }
 

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use tomcom_core::base::text::printable_lines;
+use tomcom_session::button_box::ButtonBoxEvent;
 use tomcom_session::event::{Event, TimestampedEvent};
 use tomcom_session::features::Feature;
 use tomcom_session::files::file_error::FileResult;
@@ -142,12 +143,14 @@ fn warning(stamped: &TimestampedEvent) -> Option<String> {
             | TrackerEvent::DisplayFound,
         )
         | Event::Display(DisplayEvent::Connected { .. } | DisplayEvent::Drawn { .. })
-        | Event::Film(FilmEvent::Began { .. }) => None,
+        | Event::Film(FilmEvent::Began { .. })
+        | Event::ButtonBox(ButtonBoxEvent::Connected { .. }) => None,
         Event::TrialAborted { .. } => Some(format!("{at} trial_aborted")),
         Event::RobotStage { stage, .. } => Some(format!("{at} robot_stage {}", event_words::arm_stage(*stage, ""))),
         event @ (Event::Tracker(_)
         | Event::Display(_)
         | Event::Film(_)
+        | Event::ButtonBox(_)
         | Event::ClockJumped { .. }
         | Event::FocusLost
         | Event::RobotSafety { .. }

@@ -1,7 +1,7 @@
 //! The participant's display in a live session: its content, and its inputs as events of the session.
 
-use std::time::Instant;
-
+use super::gaze_events::ago;
+use super::presses::{practise, press};
 use crate::console::console_model::NoticeLevel;
 use crate::console::preflight::ParticipantDisplayHealth;
 use crate::run::operator_station::{OperatorStation, PageInput};
@@ -99,15 +99,20 @@ impl PageEvent {
                 let event = Event::Display(DisplayEvent::Lost);
                 return PageEvent { event: Some(event), notice: Some((NoticeLevel::Alarm, text.to_string())) };
             }
-            PageInput::Press { button, at } => return press(button, at, session, now),
+            PageInput::Press { button, .. } if session.kitchen.button_named(Agent::Human, &button).is_none() => {
+                let named: String = printable(&button).chars().take(SHOWN_NAME).collect();
+                let text = format!(
+                    "the participant's page sent a press of \"{named}\", a button that the kitchen does not have"
+                );
+                return PageEvent { event: None, notice: Some((NoticeLevel::Refused, text)) };
+            }
+            PageInput::Press { button, at } => press(button, at, false, session, now),
             PageInput::Pointer { x, y } => {
                 let is_gaze = session.spec.participant.gaze == GazeSource::Mouse;
                 is_gaze.then(|| Event::Gaze(GazeSample::new(x, y, 1.0)))
             }
             PageInput::Reply(reply) => answered(reply, session, now),
-            PageInput::Drawn { cue, at } => {
-                Some(Event::Display(DisplayEvent::Drawn { cue, at_ns: session_time(at, now) }))
-            }
+            PageInput::Drawn { cue, at } => Some(Event::Display(DisplayEvent::Drawn { cue, at_ns: ago(now, at) })),
         };
         PageEvent { event, notice: None }
     }
@@ -147,26 +152,6 @@ fn answered(reply: ParticipantResponse, session: &Session, now: SessionTime) -> 
     }
 }
 
-/// A press of the participant. The press's event has the time of reception, since time in the log never decreases; the
-/// time at which the button went down is recorded in addition.
-pub fn press(button: String, at: Instant, session: &Session, now: SessionTime) -> PageEvent {
-    if session.kitchen.button_named(Agent::Human, &button).is_none() {
-        let named: String = printable(&button).chars().take(SHOWN_NAME).collect();
-        let text =
-            format!("the participant's page sent a press of \"{named}\", a button that the kitchen does not have");
-        return PageEvent { event: None, notice: Some((NoticeLevel::Refused, text)) };
-    }
-    // A press that reaches the program after the freeze probe began is ignored.
-    if session.probes.open.is_some() {
-        return PageEvent::default();
-    }
-    if session.tutorial_step().is_some() {
-        return PageEvent { event: practise(session, TutorialEvent::Pressed { button }), notice: None };
-    }
-    let at_ns = Some(session_time(at, now));
-    PageEvent { event: Some(Event::Press { agent: Agent::Human, button, at_ns }), notice: None }
-}
-
 /// The event by which the participant turns to the next (`forward`) or previous page of the tutorial from this step.
 fn turn(session: &Session, step: &str, forward: bool) -> Option<Event> {
     let (tutorial, state) = session.tutorial()?;
@@ -181,13 +166,6 @@ fn turn(session: &Session, step: &str, forward: bool) -> Option<Event> {
             None => TutorialEvent::Ended { by },
         },
     )
-}
-
-/// Converts an input of the tutorial's page to an event. Impossible inputs are ignored without a notice to the wizard:
-/// they came late, or were presses in a tutorial step without presses.
-fn practise(session: &Session, event: TutorialEvent) -> Option<Event> {
-    let event = Event::Protocol(ProtocolEvent::Tutorial(event));
-    admit(session, &event).is_ok().then_some(event)
 }
 
 /// Converts the answer to a freeze probe question to an event. Answers that are late or name no choice are ignored
@@ -235,10 +213,4 @@ fn is_before(session: &Session, item: &str) -> bool {
     shown.is_some_and(|(questionnaire, protocol)| {
         questionnaire.items.iter().take(protocol.item).any(|before| before.id == item)
     })
-}
-
-/// Session time of an instant shortly before `now`.
-fn session_time(at: Instant, now: SessionTime) -> SessionTime {
-    let age_ns = Instant::now().saturating_duration_since(at).as_nanos() as u64;
-    SessionTime(now.0.saturating_sub(age_ns))
 }

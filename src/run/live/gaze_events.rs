@@ -151,6 +151,7 @@ fn session_time(taken: TrackerTime, now: SessionTime) -> SessionTime {
     taken.at.map_or(now, |at| ago(now, at))
 }
 
-fn ago(now: SessionTime, at: Instant) -> SessionTime {
+/// Session time of an instant before `now`.
+pub(super) fn ago(now: SessionTime, at: Instant) -> SessionTime {
     now - SessionTime(at.elapsed().as_nanos().min(u128::from(u64::MAX)) as u64)
 }

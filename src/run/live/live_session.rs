@@ -152,6 +152,7 @@ impl ConsoleShell for Live {
             LoopEvent::TargetDue => self.show_target(),
             LoopEvent::Page(input) => self.take_page_input(input),
             LoopEvent::Arm(news) => self.take_arm_news(news),
+            LoopEvent::ButtonBox(message) => self.take_button_box(message),
             LoopEvent::Advice(news) => self.take_assistant_news(news),
             LoopEvent::Remark(remark) => self.take_remark(remark),
             LoopEvent::PointerTick => self.sample_pointer(),
@@ -251,6 +252,9 @@ impl Live {
         told.into_iter().for_each(|event| live.input(event));
         live.carry_calibration(station.tracker.calibrated());
         live.build_display();
+        if let Some(link) = station.button_box.link() {
+            live.take_button_box(link);
+        }
         live.begin_protocol(consent);
         Ok(live)
     }

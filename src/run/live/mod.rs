@@ -21,6 +21,7 @@ mod gaze_events;
 mod inputs;
 mod live_session;
 mod lsl_streaming;
+mod presses;
 mod recording;
 mod showing;
 #[cfg(feature = "rerun")]

@@ -106,7 +106,7 @@ impl Live {
     }
 
     /// Has the terminal ring with the next frame, if the session asks for that.
-    fn ring(&mut self, occasion: BellOccasion) {
+    pub(super) fn ring(&mut self, occasion: BellOccasion) {
         self.model.rings |= self.engine.session().spec.console.bell.contains(&occasion);
     }
 

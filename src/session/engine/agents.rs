@@ -111,7 +111,9 @@ impl SessionEngine {
             RobotEvent::Intend { button, until, initiative } => {
                 Event::RobotIntends { button: name(button), until_ns: until, initiative }
             }
-            RobotEvent::Press(button) => Event::Press { agent: Agent::Robot, button: name(button), at_ns: None },
+            RobotEvent::Press(button) => {
+                Event::Press { agent: Agent::Robot, button: name(button), at_ns: None, button_box: false }
+            }
             RobotEvent::Abort(button, reason) => Event::RobotAborts { button: name(button), reason },
             RobotEvent::Idle { reason, waits_for } => {
                 let human = &kitchen.buttons[Agent::Human.index()];

@@ -147,7 +147,7 @@ impl ParticipantDialogue {
         let Some((button, belief)) = next.press else { return Vec::new() };
         let belief =
             belief.map(|belief| Event::ParticipantBelieves(recorded(&session.kitchen, session.state, &belief)));
-        let press = Event::Press { agent: Agent::Human, button, at_ns: None };
+        let press = Event::Press { agent: Agent::Human, button, at_ns: None, button_box: false };
         belief.into_iter().chain([press]).collect()
     }
 

@@ -50,6 +50,7 @@ pub fn line(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<St
         Event::Screen(screen) => on_screen(screen),
         Event::Display(event) => on_display(event),
         Event::Film(event) => event.words(),
+        Event::ButtonBox(event) => event.words(),
         Event::Unblinded { concepts } => {
             let names: Vec<&str> = concepts.iter().map(|concept| concept.title()).collect();
             format!("the wizard sees what {} would say", names.join(", "))

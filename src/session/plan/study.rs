@@ -133,6 +133,7 @@ impl Study {
         let (mut spec, trial) = self.settings(WantedRecording { participant, slot, attempt: 1, instructed: true });
         if spec.participant.kind != ParticipantKind::Simulated {
             (spec.participant.kind, spec.participant.gaze) = (ParticipantKind::Simulated, GazeSource::Simulated);
+            spec.participant.button_box = None;
         }
         spec.trial.condition = spec.unattended(spec.trial.condition);
         let saw_advice = spec.script_reads_offers();
@@ -217,7 +218,7 @@ fn set_arm(spec: &mut SessionSpec, arm: StudyArm) {
 /// recording and which device its gaze comes from are no part of the plan either: both are chosen at the start of a
 /// recording and written to its header. The model's parameters are in `human`, and the layout's text stands beside the
 /// settings.
-const CANNOT_CHANGE_A_TRIAL: [&str; 27] = [
+const CANNOT_CHANGE_A_TRIAL: [&str; 28] = [
     "layout",
     "human_model",
     "participant.code",
@@ -227,6 +228,7 @@ const CANNOT_CHANGE_A_TRIAL: [&str; 27] = [
     "participant.gaze_listen",
     "participant.gaze_from",
     "participant.gaze_senders",
+    "participant.button_box",
     "tracker.address",
     "tracker.port",
     "tracker.record",

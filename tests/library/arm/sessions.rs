@@ -119,7 +119,7 @@ fn a_session_stops_its_arm_when_it_touches_somebody() {
     engine.robot().arm().expect("an arm in the physics").watches_hands = false;
     let board = SUSHI.button_named(Agent::Robot, "assembly_board").expect("a shared button");
     let name = SUSHI.button(Agent::Robot, board).name.clone();
-    let pressed = || Event::Press { agent: Agent::Human, button: name.clone(), at_ns: None };
+    let pressed = || Event::Press { agent: Agent::Human, button: name.clone(), at_ns: None, button_box: false };
     input(&mut engine, Event::RobotHeld { by: Sender::Wizard });
     input(&mut engine, pressed());
     until(&mut engine, 1.0, |_| false);

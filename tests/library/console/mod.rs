@@ -68,7 +68,7 @@ impl Stage {
     }
 
     fn press(&mut self, seconds: f64, agent: Agent, button: &str) {
-        self.at(seconds, Event::Press { agent, button: button.to_string(), at_ns: None });
+        self.at(seconds, Event::Press { agent, button: button.to_string(), at_ns: None, button_box: false });
     }
 
     fn look(&mut self, seconds: f64, x: f64, y: f64) {

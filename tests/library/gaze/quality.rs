@@ -228,7 +228,10 @@ impl Look {
         let (seen, trace) = (LastSeenContents::default(), BeliefEvidence::default());
         let mut look = Look { session, seen, trace, seq: 0, hand };
         look.at(3.0, Event::TrialStarted);
-        look.at(4.0, Event::Press { agent: Agent::Robot, button: "take tuna".to_string(), at_ns: None });
+        look.at(
+            4.0,
+            Event::Press { agent: Agent::Robot, button: "take tuna".to_string(), at_ns: None, button_box: false },
+        );
         look
     }
 

@@ -171,7 +171,7 @@ fn pressed_on(name: &str, sent: &[(f64, Signal)]) -> (SessionSetup, Vec<Timestam
     let buttons = &kitchen.buttons[Agent::Human.index()];
     inputs.extend((1..40).map(|number| {
         let button = buttons[random.random_range(0..buttons.len())].name.clone();
-        (2.0 * f64::from(number), Event::Press { agent: Agent::Human, button, at_ns: None })
+        (2.0 * f64::from(number), Event::Press { agent: Agent::Human, button, at_ns: None, button_box: false })
     }));
     inputs.extend(sent.iter().map(|(time_s, signal)| {
         (*time_s, Event::SignalShown { by: Sender::Wizard, signal: signal.clone(), offer: None })

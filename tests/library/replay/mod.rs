@@ -74,7 +74,7 @@ fn anything(kitchen: &Kitchen, random: &mut impl RngExt) -> Event {
         }
         _ => {
             let button = buttons[random.random_range(0..buttons.len())].name.clone();
-            Event::Press { agent: Agent::Human, button, at_ns: None }
+            Event::Press { agent: Agent::Human, button, at_ns: None, button_box: false }
         }
     }
 }

@@ -31,7 +31,7 @@ fn engine_of_trial(trial: u64, change: impl Fn(&mut SessionSpec)) -> SessionEngi
 }
 
 fn press(button: &str) -> Event {
-    Event::Press { agent: Agent::Human, button: button.to_string(), at_ns: None }
+    Event::Press { agent: Agent::Human, button: button.to_string(), at_ns: None, button_box: false }
 }
 
 /// Gives the inputs in turn; the kinds of all events with their seconds.

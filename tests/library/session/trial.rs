@@ -417,7 +417,7 @@ impl Recorded {
     }
 
     fn press(&mut self, agent: Agent, button: &str) {
-        self.add(2.0, Event::Press { agent, button: button.to_string(), at_ns: None });
+        self.add(2.0, Event::Press { agent, button: button.to_string(), at_ns: None, button_box: false });
     }
 }
 

@@ -1,5 +1,6 @@
 //! Sessions, trainings and replays at the console.
 
+mod button_box;
 mod by_hand;
 mod external;
 mod films;

@@ -9,6 +9,7 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::offer::OfferedCommunication;
 use tomcom_core::gaze::device_clock::StampFault;
+use tomcom_session::button_box::ButtonBoxEvent;
 use tomcom_session::event::{Event, MEANINGS};
 use tomcom_session::external::ExternalEvent;
 use tomcom_session::film::FilmEvent;
@@ -146,8 +147,9 @@ impl EventCells {
                 }
             }
             Event::MarkerWorded { note, .. } => self.words = note.clone(),
-            Event::Press { agent, button, at_ns } => {
+            Event::Press { agent, button, at_ns, button_box } => {
                 (self.agent, self.button, self.at) = (name(agent), button.clone(), *at_ns);
+                self.what = if *button_box { "button_box" } else { "" }.to_string();
             }
             Event::OrderShown { order, dish } => (self.location, self.dish) = (order.clone(), dish.clone()),
             Event::OrderCleared { order } => self.location = order.clone(),
@@ -167,6 +169,7 @@ impl EventCells {
                 (self.agent, self.value) = ("human".to_string(), Some(silent_ns.as_secs_f64()));
             }
             Event::Film(event) => self.take_film(event),
+            Event::ButtonBox(event) => self.take_button_box(event),
             Event::ClockJumped { by_ms } => self.value = Some(*by_ms as f64),
             Event::Screen(screen) => {
                 self.what = name(&screen.visibility);
@@ -342,6 +345,18 @@ impl EventCells {
                 self.at = Some(*taken_ns);
             }
             TrackerEvent::DisplayFound | TrackerEvent::DisplayLost => {}
+        }
+    }
+
+    fn take_button_box(&mut self, event: &ButtonBoxEvent) {
+        self.what = tag(event, "what");
+        match event {
+            ButtonBoxEvent::Connected { device: words } | ButtonBoxEvent::Lost { reason: words } => {
+                self.words = words.clone();
+            }
+            ButtonBoxEvent::Refused { lines, found } => {
+                (self.value, self.words) = (Some(*lines as f64), found.clone());
+            }
         }
     }
 

@@ -13,6 +13,7 @@ use tomcom_core::gaze::tags::SurfaceHomography;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::measures::raters::CodableErrors;
 use tomcom_core::mind::model::HumanModel;
+use tomcom_devices::button_box::{ButtonBoxMessage, PressLines};
 use tomcom_devices::display::message as page_message;
 use tomcom_devices::pupil::message as pupil_message;
 use tomcom_devices::pupil::zmtp::ZmtpFrameAssembler;
@@ -38,7 +39,7 @@ const RECORDING: &str = include_str!("../../../golden/format-3-hand.jsonl");
 pub type Reader = fn(&[u8]);
 
 /// The readers with the names that `tests/fuzz/run` takes.
-pub const READERS: [(&str, Reader); 25] = [
+pub const READERS: [(&str, Reader); 26] = [
     ("layout", layout),
     ("recipes", recipes),
     ("session", session),
@@ -64,6 +65,7 @@ pub const READERS: [(&str, Reader); 25] = [
     ("pupil_frames", frames),
     ("page_message", page),
     ("terminal", terminal),
+    ("button_box", button_box),
 ];
 
 fn text(bytes: &[u8]) -> String {
@@ -231,6 +233,15 @@ fn terminal(bytes: &[u8]) {
     parser.expire(now + second);
     let read = parser.read(b" ", now + second);
     assert!(matches!(&read[..], [ConsoleMessage::Key(_)]) && parser.deadline().is_none(), "{read:?}");
+}
+
+/// What a button box may send, in pieces, at once: no more presses than hands make.
+fn button_box(bytes: &[u8]) {
+    let kitchen =
+        compile_kitchen((Path::new("layout"), LAYOUT.to_string()), (Path::new("recipes"), RECIPES.to_string()));
+    let (mut lines, now) = (PressLines::new(&kitchen.expect("a kitchen of the project").kitchen), Instant::now());
+    let told: Vec<ButtonBoxMessage> = bytes.chunks(5).flat_map(|piece| lines.take(piece, now)).collect();
+    assert!(told.iter().filter(|message| matches!(message, ButtonBoxMessage::Press(..))).count() <= 20, "{told:?}");
 }
 
 /// Errors are told, with their place in the text.

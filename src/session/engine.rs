@@ -15,7 +15,7 @@
 
 mod agents;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
 
 use crate::admit::{admit, hygiene};
@@ -39,6 +39,7 @@ use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, Kitchen};
 use tomcom_core::measures::JudgedPress;
+use tomcom_core::mind::RecordedEstimate;
 use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_people::participant::eyes::GazeDropoutSchedule;
 use tomcom_people::participant::{ParticipantAction, SimulatedParticipant};
@@ -62,6 +63,8 @@ pub struct SessionEngine {
     asked: Option<AdviceRequest>,
     /// Requests that the caller has not got yet.
     questions: Vec<AdviceRequest>,
+    /// Estimates of a recorded trial that is run again without an estimate of its own, the next press first.
+    recorded_estimates: VecDeque<RecordedEstimate>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -112,6 +115,7 @@ impl SessionEngine {
             to_ask: None,
             asked: None,
             questions,
+            recorded_estimates: VecDeque::new(),
         }
     }
 
@@ -128,6 +132,23 @@ impl SessionEngine {
     /// Without attribution of errors to causes, which takes too long in a running session.
     pub fn without_causes(self) -> SessionEngine {
         SessionEngine { follower: self.follower.without_causes(), ..self }
+    }
+
+    /// Without the belief estimate, which takes most of the time of a trial, unless the trial depends on it: for runs whose
+    /// log nobody keeps.
+    pub fn without_unused_estimate(self) -> SessionEngine {
+        let spec = &self.session().spec;
+        let is_used = spec.asks_assistant() || spec.probes.is_some();
+        if is_used { self } else { SessionEngine { follower: self.follower.without_estimate(), ..self } }
+    }
+
+    /// With the estimates that a recording of this trial has, the first press first, unless freeze probes need the
+    /// engine's own. Its recommendations must come from the recording, too.
+    pub fn with_recorded_estimates(self, recorded_estimates: VecDeque<RecordedEstimate>) -> SessionEngine {
+        match self.session().spec.probes {
+            Some(_) => self,
+            None => SessionEngine { follower: self.follower.without_estimate(), recorded_estimates, ..self },
+        }
     }
 
     pub fn belief(&self) -> &DirichletBelief {
@@ -175,7 +196,7 @@ impl SessionEngine {
     pub fn unassisted(self) -> SessionEngine {
         let needs_estimate = self.session().spec.probes.is_some();
         let follower = if needs_estimate { self.follower } else { self.follower.without_estimate() };
-        SessionEngine { follower, wizard: None, ..self }
+        SessionEngine { follower, wizard: None, recorded_estimates: VecDeque::new(), ..self }
     }
 
     pub fn for_header(kitchen: Arc<Kitchen>, header: &LogHeader, cost: CostToGo) -> SessionEngine {
@@ -315,7 +336,8 @@ impl SessionEngine {
             _ => None,
         };
         let estimated = self.follower.estimated.as_ref().filter(|estimated| estimated.press == stamped.seq);
-        let estimate = estimated.map(|estimated| estimated.witness(&self.session().kitchen));
+        let recorded = self.recorded_estimates.pop_front_if(|estimate| estimate.press == stamped.seq);
+        let estimate = recorded.or_else(|| Some(estimated?.witness(&self.session().kitchen)));
         self.out.push(stamped);
         if let Some(signal) = advice {
             self.record_own(now, signal);

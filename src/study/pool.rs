@@ -153,7 +153,8 @@ impl PoolStudy<'_> {
 
     fn simulate(&self, kitchen: &Arc<Kitchen>, item: PoolItem, kept: &mut KeptCost) -> PoolTrial {
         let (spec, arm, trial) = self.settings(item);
-        let mut engine = SessionEngine::new(kitchen.clone(), spec, trial, kept.take(kitchen));
+        let engine = SessionEngine::new(kitchen.clone(), spec, trial, kept.take(kitchen));
+        let mut engine = engine.without_unused_estimate();
         let mut signals = SignalTimes::default();
         let keep = |stamped: &TimestampedEvent| {
             signals.note(stamped);

@@ -1,5 +1,6 @@
 //! One recording of a tournament: its figures, and how well assistant and external concept know the participant's beliefs.
 
+use std::collections::VecDeque;
 use std::path::Path;
 
 use crate::analysis::trial_summary::TrialSummary;
@@ -68,7 +69,7 @@ pub fn read(recording: &Path, useful: Option<u64>, kept: &mut KeptCost) -> FileR
     let mut replay = RecordingReplay::over(log, kept.take(&kitchen));
     // The log has the estimates.
     replay.follower = replay.follower.without_estimate();
-    let mut found = ContestTrial::default();
+    let (mut found, mut estimates) = (ContestTrial::default(), VecDeque::new());
     let (mut held, mut pressed): (Option<Vec<f64>>, Option<Vec<Option<f64>>>) = (None, None);
     while let Some(replayed) = replay.step()? {
         if let Some(press) = replayed.change.human_press() {
@@ -80,6 +81,7 @@ pub fn read(recording: &Path, useful: Option<u64>, kept: &mut KeptCost) -> FileR
                 held = Some(witness.aspects.iter().map(|aspect| aspect.p_truth).collect());
             }
             Event::BeliefEstimated(witness) => {
+                estimates.push_back(witness.clone());
                 let Some(held) = held.take() else { continue };
                 found.own.add(EstimateBeforePress::from_witness(witness).p_false.into_iter().map(Some), &held);
                 if let Some(told) = pressed.take() {
@@ -101,7 +103,7 @@ pub fn read(recording: &Path, useful: Option<u64>, kept: &mut KeptCost) -> FileR
         _ if found.failed.is_some() => None,
         (None, 0) => Some(0),
         (Some(useful), _) => Some(useful),
-        (None, _) => useful_signals(recording, kept.take(&kitchen))?,
+        (None, _) => useful_signals(recording, estimates, kept.take(&kitchen))?,
     };
     Ok(found)
 }

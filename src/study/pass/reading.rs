@@ -1,6 +1,7 @@
 //! Replays one recording of a study once, and reduces the recording to the statistics that the analysis keeps. Reads
 //! also the consent and the answers to tutorials, which can stand in practice recordings.
 
+use std::collections::VecDeque;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -150,7 +151,7 @@ pub fn read(
     let mut rows = RowCollector::new(name);
     let mut robot = RobotEventTally::new(header.session.robot.arm);
     let mut regret = RegretSum::default();
-    let mut answers = Vec::new();
+    let (mut answers, mut estimates) = (Vec::new(), VecDeque::new());
     let mut probes = ProbeCollector::default();
     let mut display = DisplayLossTally::default();
     let is_simulated = header.session.participant.kind == ParticipantKind::Simulated;
@@ -178,8 +179,10 @@ pub fn read(
         if extent.events {
             rows.note(&line.stamped, &change, follower, was_running);
         }
-        if matches!(line.stamped.event, Event::Protocol(ProtocolEvent::AnswersConfirmed)) {
-            answers.extend(confirmed_answers(&follower.session));
+        match line.stamped.event {
+            Event::Protocol(ProtocolEvent::AnswersConfirmed) => answers.extend(confirmed_answers(&follower.session)),
+            Event::BeliefEstimated(estimate) => estimates.push_back(estimate),
+            _ => {}
         }
     }
     let standing = exclusion_status(&pass.follower().session, &log)?;
@@ -197,7 +200,7 @@ pub fn read(
     trial.beliefs = basis.map(|basis| beliefs(follower, &judged, basis, known.as_ref()));
     trial.answers = answers;
     if extent.concepts && basis == Some(BeliefSource::Recorded) && trial.signals > 0 {
-        trial.useful_signals = useful_signals(recording, cost)?;
+        trial.useful_signals = useful_signals(recording, estimates, cost)?;
     }
     trial.additional_presses_per_order = regret.per_order(trial.orders);
     trial.wizard = (header.session.trial.condition == Condition::Wizard).then(|| match &known {

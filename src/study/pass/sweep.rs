@@ -27,6 +27,7 @@ use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, AspectId, KitchenChange};
 use tomcom_core::measures::attribution::ErrorCause;
 use tomcom_core::measures::sequences::FalseBeliefEpisode;
+use tomcom_core::mind::RecordedEstimate;
 use tomcom_session::admit::is_external;
 use tomcom_session::advisor::{AdviceRequest, leads_to_advice};
 use tomcom_session::apply::ApplyError;
@@ -180,16 +181,20 @@ struct TwinResult {
     errors: u64,
 }
 
-/// Number of useful signals of a recorded trial of a simulated participant. `cost`: the cost to go of the trial's
-/// kitchen, whose caches may be filled. `None` if the trial cannot be run again: the program version that recorded it
-/// had other simulated participants, or this build lacks the robot's arm.
-pub(super) fn useful_signals(recording: &Path, cost: CostToGo) -> FileResult<Option<u64>> {
+/// Number of useful signals of a recorded trial of a simulated participant. `estimates`: those of the recording.
+/// `cost`: the cost to go of the trial's kitchen, whose caches may be filled. `None` if the trial cannot be run again: the
+/// program version that recorded it had other simulated participants, or this build lacks the robot's arm.
+pub(super) fn useful_signals(
+    recording: &Path,
+    estimates: VecDeque<RecordedEstimate>,
+    cost: CostToGo,
+) -> FileResult<Option<u64>> {
     let mut log = LogReader::open(recording)?;
     let (kitchen, header) = (log.kitchen.clone(), log.header.clone());
     if header.session.require_built().is_err() {
         return Ok(None);
     }
-    let mut again = SessionEngine::for_header(kitchen, &header, cost);
+    let mut again = SessionEngine::for_header(kitchen, &header, cost).with_recorded_estimates(estimates);
     let (mut produced, mut twins) = (VecDeque::new(), Vec::new());
     while let Some(line) = log.next_line()? {
         if produced.is_empty() {
@@ -205,7 +210,8 @@ pub(super) fn useful_signals(recording: &Path, cost: CostToGo) -> FileResult<Opt
     Ok(Some(twins.iter().filter(is_useful).count() as u64))
 }
 
-/// Runs up to a recorded event, and a twin for every signal before it. Recommendations are taken from the log.
+/// Runs up to a recorded event, and a twin for every signal before it. Recommendations and estimates are taken from the
+/// log.
 fn run_to(
     again: &mut SessionEngine,
     recorded: &TimestampedEvent,

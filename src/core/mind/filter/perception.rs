@@ -281,19 +281,27 @@ impl SampleObservations {
     fn integrate(&self, classes: &mut [ValueClass], precision: f64) {
         let used: Vec<usize> = (0..classes.len()).filter(|&index| classes[index].alpha > 0.0).collect();
         let points = self.weights[used[0]].0.len();
-        let mut last = 0.0;
+        let height = |classes: &[ValueClass], point: usize| {
+            let exponents = used.iter().map(|&index| classes[index].alpha * self.weights[index].0[point][0]);
+            STEP * (-exponents.sum::<f64>()).exp()
+        };
         for point in 0..points {
-            let exponent: f64 = used.iter().map(|&index| classes[index].alpha * self.weights[index].0[point][0]).sum();
-            last = STEP * (-exponent).exp();
+            let height = height(classes, point);
+            let mut is_over = true;
             for &index in &used {
                 let ratio = self.weights[index].0[point][1];
                 let [first, second] = &mut classes[index].integrals;
-                *first += last * ratio;
-                *second += last * ratio * ratio;
+                let sums = [*first + height * ratio, *second + height * ratio * ratio];
+                is_over &= sums == [*first, *second];
+                [*first, *second] = sums;
+            }
+            // Logarithms of the integrands are concave: beyond a point that changes no sum, no point changes one.
+            if is_over {
+                break;
             }
         }
         // Before the first point the integrands are proportional to t and t^2; after the last one to t^-precision.
-        let after = last / (precision * STEP).exp_m1();
+        let after = height(classes, points - 1) / (precision * STEP).exp_m1();
         for &index in &used {
             let ratio = self.weights[index].0[0][1];
             let [first, second] = &mut classes[index].integrals;

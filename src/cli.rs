@@ -272,7 +272,7 @@ fn correct(args: &CorrectArgs) -> Result<(), Failure> {
 fn examine(args: &DoctorArgs) -> Result<(), Failure> {
     let files = options::session_or_default(args.session.as_deref())?;
     tell_carried(args.session.as_deref().unwrap_or(Path::new(DEFAULT_SESSION)), Some(&args.out));
-    let found = doctor::examine(&files.spec, &files.kitchen.kitchen, &args.out);
+    let found = doctor::examine(&files, &args.out);
     if let Some(report) = &args.report {
         let written = fault_report::write(report, &files.spec, &found, &args.out);
         written.map_err(|reason| FileError::unwritable(report, reason))?;

@@ -23,12 +23,18 @@ pub(super) struct NewArgs {
 }
 
 /// What stands in the folder beside what the program carries.
-const README: (&str, &str) = ("README.md", include_str!("lab.md"));
+const OWN: [(&str, &str); 5] = [
+    ("README.md", include_str!("lab.md")),
+    ("scripts/read_recording.R", include_str!("../../examples/read_recording.R")),
+    ("scripts/read_recording.py", include_str!("../../examples/read_recording.py")),
+    ("scripts/read_tables.R", include_str!("../../examples/read_tables.R")),
+    ("scripts/read_tables.py", include_str!("../../examples/read_tables.py")),
+];
 
 pub(super) fn new(args: &NewArgs) -> Result<(), Failure> {
     let folder = &args.folder;
     let (mut written, mut there) = (0_u64, Vec::new());
-    for (path, text) in [README].iter().chain(carried::FILES) {
+    for (path, text) in OWN.iter().chain(carried::FILES) {
         let path = folder.join(path);
         match write_new(&path, text) {
             Ok(()) => written += 1,
@@ -44,7 +50,7 @@ pub(super) fn new(args: &NewArgs) -> Result<(), Failure> {
     for path in there {
         told += &format!("{} was there, and stays as it is\n", path.display());
     }
-    told += &format!("Next: cd {}, and tomcom. README.md says what else.\n", folder.display());
+    told += &format!("Next: cd {}, and tomcom --out try. README.md says what else.\n", folder.display());
     Ok(put(&told)?)
 }
 

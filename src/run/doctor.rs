@@ -18,10 +18,9 @@ use super::ask::ask;
 use super::terminal::theme;
 use crate::console::text_columns::wrap;
 use crate::console::view::theme::TerminalBackground;
-use tomcom_core::kitchen::Kitchen;
 use tomcom_session::SessionSpec;
 use tomcom_session::features::Feature;
-use tomcom_session::files::WallTime;
+use tomcom_session::files::{SessionSetup, WallTime};
 use tomcom_session::log::RecordingLock;
 use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict, space};
 use tomcom_session::settings::ConsoleSpec;
@@ -52,7 +51,8 @@ pub struct DoctorCheck {
 }
 
 /// Checks everything that a session with these settings needs; `out` is the folder for its recordings.
-pub fn examine(spec: &SessionSpec, kitchen: &Kitchen, out: &Path) -> DoctorReport {
+pub fn examine(files: &SessionSetup, out: &Path) -> DoctorReport {
+    let (spec, kitchen) = (&files.spec, &files.kitchen.kitchen);
     let place = folder(out);
     // The free disk space matters only if the folder for recordings can be written to.
     let room = (place.verdict == PreflightVerdict::Ok).then(|| space(free_bytes(&existing(out)).ok()));
@@ -67,6 +67,8 @@ pub fn examine(spec: &SessionSpec, kitchen: &Kitchen, out: &Path) -> DoctorRepor
     add("for the participant's buttons", devices::button_box(spec).into_iter().collect());
     #[cfg(feature = "rerun")]
     add("for Rerun", vec![viewer()]);
+    let remarks = files.study().map_or_else(Vec::new, |study| study.remarks());
+    add("for the plan", remarks.into_iter().map(plan_remark).collect());
     add("for films beside recordings", films::checks(spec.video.as_ref()));
     add("for parts that this program was built without", left_out().collect());
     add("for the Lab Streaming Layer", devices::lsl(spec).into_iter().collect());
@@ -75,6 +77,10 @@ pub fn examine(spec: &SessionSpec, kitchen: &Kitchen, out: &Path) -> DoctorRepor
     add("for the arm", devices::arm(spec, kitchen));
     let healthy = checks.iter().all(|one| one.check.verdict != PreflightVerdict::Failed);
     DoctorReport { healthy, checks }
+}
+
+fn plan_remark(remark: String) -> PreflightCheck {
+    PreflightCheck::new("plan", PreflightVerdict::Warning, remark, "change the session file, unless it is meant so")
 }
 
 /// The findings as text, wrapped to this width in columns.

@@ -70,7 +70,9 @@ impl LiveOutcome {
     /// The result of the live session as text.
     pub fn describe(&self) -> String {
         let Some(folder) = &self.folder else { return "nothing was recorded: no trial was begun".to_string() };
-        let folder = folder.display();
+        // A further part has the absolute path of its recording.
+        let here = std::env::current_dir().ok();
+        let folder = here.and_then(|here| folder.strip_prefix(here).ok()).unwrap_or(folder).display();
         let presses = count(self.figures.human_actions + self.figures.robot_actions, "press", "presses");
         let signals = count(self.figures.signals, "signal", "signals");
         let served = count(self.figures.served.len() as u64, "order", "orders");

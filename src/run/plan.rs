@@ -31,6 +31,8 @@ pub struct StudyProgress {
     pub finished: usize,
     /// Number of simulated recordings of the plan, which fill none of it.
     pub simulated: u64,
+    /// What the plan leaves out without being wrong, in words.
+    pub remarks: Vec<String>,
     /// Progress of each participant.
     pub participants: Vec<ParticipantProgress>,
 }
@@ -53,9 +55,18 @@ impl StudyProgress {
             planned: participants.len(),
             finished: participants.iter().filter(|one| one.done() == one.steps.len()).count(),
             simulated,
+            remarks: remarks(study),
             participants,
         })
     }
+}
+
+fn remarks(study: &Study) -> Vec<String> {
+    let language = study.session.display.code();
+    // Nobody but its author knows the language of the consent's text.
+    let consent = (language != "en")
+        .then(|| format!("the consent's text stands in the plan: make sure that it is in \"{language}\""));
+    study.remarks().into_iter().chain(consent).collect()
 }
 
 /// Result of freezing (preregistering) a study plan: the output of `tomcom plan SESSION --freeze FILE`.
@@ -139,7 +150,8 @@ pub fn describe(figures: &StudyProgress) -> String {
         0 => String::new(),
         all => format!("not counted: {} of the plan\n", count(all, "simulated recording", "simulated recordings")),
     };
-    let head = head + &unbalanced(figures);
+    let remarks: String = figures.remarks.iter().map(|remark| format!("{remark}\n")).collect();
+    let head = head + &unbalanced(figures) + &remarks;
     head + &figures.participants.iter().map(one).collect::<String>() + &simulated
 }
 
@@ -192,6 +204,9 @@ fn attempts(progress: &ParticipantProgress) -> String {
             let corrected = recorded.map_or(String::new(), |code| format!(", recorded as {code}{arm}"));
             let how = match (&attempt.outcome, &attempt.waived, &attempt.excluded) {
                 (RecordingOutcome::Complete, Some(reason), _) => &format!("criterion not met, waived ({reason})"),
+                (RecordingOutcome::Complete, None, _) if attempt.ended_by_wizard && stand.slot.period.is_some() => {
+                    &format!("counts, though {}, ended by the wizard", attempt.ended_where)
+                }
                 (RecordingOutcome::Complete, None, _) if attempt.other_version || recorded.is_some() => "done",
                 (RecordingOutcome::Complete, None, _) => continue,
                 (RecordingOutcome::Open, _, Some(reason)) => &format!("{open}, excluded ({reason})"),

@@ -12,6 +12,7 @@ use super::options::{SeriesRequest, SessionStart};
 use super::resume::PreparedSession;
 use super::start_prompt::{ask, ask_consent};
 use crate::console::lists::StartPrompt;
+use tomcom_core::base::text::count;
 use tomcom_session::files::SessionSetup;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::log::{LogReader, RecordingLock, RecordingWriteError};
@@ -124,6 +125,26 @@ impl Planned {
         Ok((progress(self.series.participant).map_err(LiveError::Plan)?, (finished, all)))
     }
 
+    /// The question whether a recording is meant, where others in the folder are of another version of the plan.
+    fn changed(&self, code: &str) -> Result<Option<StartPrompt>, LiveError> {
+        let (made, _) = recordings_of(&self.study, &self.series.out)?;
+        let others: Vec<&PlanRecording> = made.iter().filter(|made| made.step.digest != self.study.digest).collect();
+        let Some(last) = others.last() else { return Ok(None) };
+        let out = &self.series.out;
+        let header = LogReader::open(&out.join(&last.recording))?.header;
+        let kitchen = &self.series.files.kitchen;
+        let changed = self.study.changed_since(&header, [&kitchen.layout, &kitchen.recipes]).join(", ");
+        let number = count(others.len() as u64, "recording", "recordings");
+        Ok(Some(StartPrompt::new(
+            format!("{code}: THE PLAN HAS CHANGED"),
+            vec![
+                format!("The plan is not that of {number} in the folder {}.", out.display()),
+                format!("Changed since {}: {changed}.", last.recording),
+            ],
+            vec!["record under the changed plan".to_string(), "leave: nothing is recorded".to_string()],
+        )))
+    }
+
     async fn run(self) -> Result<SeriesOutcome, LiveError> {
         let code = self.study.plan.code(self.series.participant);
         // Until the series is over, no other program can begin a recording of the participant.
@@ -137,6 +158,11 @@ impl Planned {
         let mut station = OperatorStation::take(&files.spec, &files.kitchen.kitchen, *observe).await?;
         if self.series.files.spec.participant.kind == ParticipantKind::Simulated
             && ask(&mut station, rehearsal(&progress, &self.series.out)).await? != Some(0)
+        {
+            return Ok(SeriesOutcome { done, remark: Some(stands(&progress)) });
+        }
+        if let Some(question) = self.changed(&code)?
+            && ask(&mut station, question).await? != Some(0)
         {
             return Ok(SeriesOutcome { done, remark: Some(stands(&progress)) });
         }

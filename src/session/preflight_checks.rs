@@ -165,17 +165,17 @@ pub fn participant(
         GazeSource::Mouse => checks.extend(gaze(session, now, rejected)),
         GazeSource::Json => {
             checks.extend(gaze(session, now, rejected));
-            checks.extend(calibration(session, check_gaze));
+            checks.push(calibration(session, check_gaze));
         }
         GazeSource::Lsl => {
             checks.push(stream(session));
             checks.extend(gaze(session, now, rejected));
-            checks.extend(calibration(session, check_gaze));
+            checks.push(calibration(session, check_gaze));
         }
         GazeSource::Pupil => {
             checks.push(tracker(session));
             checks.extend(gaze(session, now, rejected));
-            checks.push(calibration(session, check_gaze).unwrap_or_else(|| unchecked(check_gaze)));
+            checks.push(calibration(session, check_gaze));
         }
     }
     checks
@@ -360,18 +360,16 @@ fn stream(session: &Session) -> PreflightCheck {
     PreflightCheck::new("eye tracker", PreflightVerdict::Failed, found, remedy)
 }
 
-fn calibration(session: &Session, check_gaze: &str) -> Option<PreflightCheck> {
-    let accuracy_deg = session.calibrated.as_ref()?.accuracy_deg();
+fn calibration(session: &Session, check_gaze: &str) -> PreflightCheck {
+    let Some(accuracy_deg) = session.calibrated.as_ref().map(|checked| checked.accuracy_deg()) else {
+        let remedy = format!("{check_gaze} checks gaze accuracy with targets (check_gaze in the key file)");
+        return PreflightCheck::new("calibration", PreflightVerdict::Warning, "gaze accuracy is not checked", remedy);
+    };
     let verdict = match accuracy_deg {
         deg if deg <= GOOD_DEG => PreflightVerdict::Ok,
         deg if deg <= USABLE_DEG => PreflightVerdict::Warning,
         _ => PreflightVerdict::Failed,
     };
     let remedy = format!("calibrate the tracker again, then check its accuracy with targets ({check_gaze})");
-    Some(PreflightCheck::new("calibration", verdict, format!("gaze is off by {accuracy_deg:.1} deg"), remedy))
-}
-
-fn unchecked(check_gaze: &str) -> PreflightCheck {
-    let remedy = format!("{check_gaze} checks gaze accuracy with targets (check_gaze in the key file)");
-    PreflightCheck::new("calibration", PreflightVerdict::Warning, "gaze accuracy is not checked", remedy)
+    PreflightCheck::new("calibration", verdict, format!("gaze is off by {accuracy_deg:.1} deg"), remedy)
 }

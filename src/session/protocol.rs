@@ -28,6 +28,14 @@ impl StudyPhase {
         self.into()
     }
 
+    /// As screens name it.
+    pub fn title(self) -> &'static str {
+        match self {
+            StudyPhase::Familiarisation => "practice",
+            phase => phase.name(),
+        }
+    }
+
     /// Practice or counted.
     pub fn has_trial(self) -> bool {
         matches!(self, StudyPhase::Trial | StudyPhase::Familiarisation)

@@ -64,11 +64,42 @@ pub struct StudyArmContrast {
     pub arm: StudyArm,
     pub against: StudyArm,
     pub ratio: f64,
-    /// 95 % confidence interval of the ratio of rates.
+    /// Of the interval: that at which Holm's procedure tests the contrast, 0.95 for a single one. So the interval is without
+    /// 1 exactly where the corrected p value is below 0.05.
+    pub level: f64,
+    /// Confidence interval of the ratio of rates.
     pub interval: [f64; 2],
     pub p_holm: f64,
     #[serde(flatten)]
     pub contrast: MixedModelContrast,
+}
+
+/// What a contrast says about the rates of two arms.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ContrastVerdict {
+    /// The corrected p value is below 0.05.
+    Shown,
+    /// Only the p value of this contrast alone is.
+    Uncertain,
+    NoDifference,
+}
+
+impl StudyArmContrast {
+    pub fn verdict(&self) -> ContrastVerdict {
+        match (self.p_holm < 1.0 - LEVEL, self.contrast.p < 1.0 - LEVEL) {
+            (true, _) => ContrastVerdict::Shown,
+            (false, true) => ContrastVerdict::Uncertain,
+            (false, false) => ContrastVerdict::NoDifference,
+        }
+    }
+
+    /// Takes over the corrected p value, with the level and the interval that belong to it.
+    fn correct(&mut self, p_holm: f64, contrasts: usize) {
+        let times = if self.contrast.p > 0.0 { p_holm / self.contrast.p } else { contrasts as f64 };
+        self.p_holm = p_holm;
+        self.level = 1.0 - (1.0 - LEVEL) / times;
+        self.interval = self.contrast.interval(self.level).map(f64::exp);
+    }
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -102,7 +133,7 @@ pub struct NonInferiority {
     pub holds: bool,
 }
 
-fn events(outcome: PrimaryOutcome, trial: &TrialStatistics) -> Option<u64> {
+pub(crate) fn events(outcome: PrimaryOutcome, trial: &TrialStatistics) -> Option<u64> {
     match outcome {
         PrimaryOutcome::Errors => Some(trial.errors),
         PrimaryOutcome::BeliefRelatedErrors => trial.beliefs.as_ref().map(|beliefs| beliefs.errors),
@@ -151,12 +182,13 @@ fn contrasts(design: &ArmComparisonDesign, model: &LinearMixedModel) -> Vec<Stud
     let contrast = |pair: (StudyArm, StudyArm)| {
         let contrast = model.contrast(&design.weights(pair, model.estimates.len()))?;
         let (arm, against) = pair;
-        let interval = contrast.interval(LEVEL).map(f64::exp);
-        Some(StudyArmContrast { arm, against, ratio: contrast.estimate.exp(), interval, p_holm: contrast.p, contrast })
+        let (ratio, interval) = (contrast.estimate.exp(), [f64::NAN; 2]);
+        Some(StudyArmContrast { arm, against, ratio, level: LEVEL, interval, p_holm: contrast.p, contrast })
     };
     let mut all: Vec<StudyArmContrast> = arm_pairs(&design.arms).into_iter().filter_map(contrast).collect();
     let corrected = holm(&all.iter().map(|one| one.contrast.p).collect::<Vec<_>>());
-    all.iter_mut().zip(corrected).for_each(|(one, p)| one.p_holm = p);
+    let contrasts = all.len();
+    all.iter_mut().zip(corrected).for_each(|(one, p)| one.correct(p, contrasts));
     all
 }
 
@@ -219,14 +251,17 @@ pub(crate) fn compare_counts(trials: Vec<StudyArmTrial>, aims: StudyAims) -> Opt
     };
     let is_assistants = |arm: StudyArm| arm.condition() == Condition::Assistant;
     let against_wizard = found.iter().filter(|one| one.against == StudyArm::Wizard && is_assistants(one.arm));
-    let non_inferiority = against_wizard.map(|one| NonInferiority {
-        arm: one.arm,
-        against: one.against,
-        margin: aims.margin,
-        ratio: one.ratio,
-        upper: one.interval[1],
-        p: one.contrast.p_below(aims.margin.ln()),
-        holds: one.interval[1] < aims.margin,
+    let non_inferiority = against_wizard.map(|one| {
+        let upper = one.contrast.interval(LEVEL)[1].exp();
+        NonInferiority {
+            arm: one.arm,
+            against: one.against,
+            margin: aims.margin,
+            ratio: one.ratio,
+            upper,
+            p: one.contrast.p_below(aims.margin.ln()),
+            holds: upper < aims.margin,
+        }
     });
     let outcome_of = |arm: StudyArm| {
         let own = || design.trials.iter().filter(|trial| trial.arm == arm);

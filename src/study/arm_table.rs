@@ -136,7 +136,7 @@ pub fn describe(table: &StudyArmTable) -> String {
         ];
         text += &format!("| {} | {} | {} |\n", row.arm.name(), row.trials, cells.join(" | "));
     }
-    text + "\nper 100 presses of the participant; in brackets intervals of 95 %, by a bootstrap over participants\n"
+    text + "\nper 100 presses of the human; in brackets intervals of 95 %, by a bootstrap over participants\n"
 }
 
 fn number(figure: &StudyArmStatistic, scale: f64, digits: usize) -> String {

@@ -7,8 +7,8 @@ use std::fmt::Write;
 use maud::{Markup, PreEscaped, html};
 
 use crate::analysis::probe_figures::ProbeSummary;
-use crate::arm_comparison::{StudyArmContrast, StudyConditionSummary};
-use crate::drawn_study::{SignificanceTestMethod, reference};
+use crate::arm_comparison::{StudyArmContrast, StudyConditionSummary, events};
+use crate::drawn_study::SignificanceTestMethod;
 use crate::effect::{TrialPair, pairs};
 use crate::figures::StudySummary;
 use crate::power::{ALPHA, PowerSummary, WANTED};
@@ -19,34 +19,51 @@ use crate::tables::trials::HEADLINE;
 use crate::tournament::TournamentRow;
 use crate::trial_statistics::TrialStatistics;
 use tomcom_core::measures::detection::CalibrationBin;
+use tomcom_session::plan::PrimaryOutcome;
 use tomcom_session::study_arm::StudyArm;
 
-/// After the paper's figure, top left; lines join the two trials of a participant, means are black.
-pub(crate) fn errors_by_condition(trials: &[TrialStatistics]) -> Option<Markup> {
-    let pairs = pairs(trials, HEADLINE).pairs;
-    let values = || pairs.iter().flat_map(|pair| pair.values).map(percent);
-    if pairs.is_empty() {
+/// After the paper's figure, top left; lines join the trials of a participant, means are black. `None` with one condition.
+pub(crate) fn rates_by_condition(trials: &[TrialStatistics], outcome: PrimaryOutcome) -> Option<Markup> {
+    let rate = |trial: &TrialStatistics| Some(percent(events(outcome, trial)? as f64 / trial.human_presses as f64));
+    let is_of = |trial: &TrialStatistics, arm: StudyArm| {
+        trial.counts() && trial.human_presses > 0 && trial.planned_arm == arm && rate(trial).is_some()
+    };
+    let arms: Vec<StudyArm> =
+        StudyArm::ALL.into_iter().filter(|&arm| trials.iter().any(|trial| is_of(trial, arm))).collect();
+    if arms.len() < 2 {
         return None;
     }
-    let names = ["unassisted".to_string(), "assisted".to_string()];
-    let mut chart = SvgChart::new(
-        420.0,
-        320.0,
-        PlotAxis::named(&names),
-        PlotAxis::over("errors per 100 presses of the human", values()),
-    );
-    for pair in &pairs {
-        let [without, with] = pair.by_condition().map(percent);
-        let class = group_class(pair);
-        chart.line(&format!("thin {class}"), &[(0.0, without), (1.0, with)]);
-        for (x, y) in [(0.0, without), (1.0, with)] {
-            chart.point(class, x, y, &format!("{}, {}: {y:.1}", pair.participant, names[x as usize]));
+    // Of a repeated trial the last one counts.
+    let of = |own: &'_ [TrialStatistics]| -> Vec<(f64, f64)> {
+        let last = |arm| own.iter().rfind(|trial| is_of(trial, arm)).and_then(rate);
+        arms.iter().enumerate().filter_map(|(x, &arm)| Some((x as f64, last(arm)?))).collect()
+    };
+    let people: Vec<(&TrialStatistics, Vec<(f64, f64)>)> =
+        trials.chunk_by(|a, b| a.participant == b.participant).map(|own| (&own[0], of(own))).collect();
+    let names: Vec<String> = arms.iter().map(|arm| arm.title().to_string()).collect();
+    let label = match outcome {
+        PrimaryOutcome::Errors => "errors per 100 presses of the human",
+        PrimaryOutcome::BeliefRelatedErrors => "belief related errors per 100 presses of the human",
+        PrimaryOutcome::Sequences => "sequences per 100 presses of the human",
+    };
+    let values = people.iter().flat_map(|(_, points)| points.iter().map(|(_, y)| *y));
+    let width = 420.0 + 110.0 * (arms.len() - 2) as f64;
+    let mut chart = SvgChart::new(width, 320.0, PlotAxis::named(&names), PlotAxis::over(label, values));
+    for (first, points) in &people {
+        let class = if arms.len() == 2 && first.is_assisted() { "first" } else { "second" };
+        chart.line(&format!("thin {class}"), points);
+        for (x, y) in points {
+            chart.point(class, *x, *y, &format!("{}, {}: {y:.1}", first.participant, names[*x as usize]));
         }
     }
-    let means = [0, 1].map(|index| mean(pairs.iter().map(|pair| percent(pair.by_condition()[index]))).unwrap_or(0.0));
-    chart.line("mean", &[(0.0, means[0]), (1.0, means[1])]);
-    chart.words("strong", 0.0, means[0], false, &format!("{:.1}", means[0]));
-    chart.words("strong", 1.0, means[1], true, &format!("{:.1}", means[1]));
+    let at =
+        |x: usize| people.iter().flat_map(move |(_, points)| points.iter().filter(move |point| point.0 as usize == x));
+    let means: Vec<(f64, f64)> =
+        (0..arms.len()).filter_map(|x| Some((x as f64, mean(at(x).map(|point| point.1))?))).collect();
+    chart.line("mean", &means);
+    for (x, y) in means {
+        chart.words("strong", x, y, x > 0.0, &format!("{y:.1}"));
+    }
     Some(chart.finish("Errors by condition and participant"))
 }
 
@@ -230,7 +247,7 @@ pub fn ratios(contrasts: &[StudyArmContrast]) -> Option<Markup> {
     let width = 160.0 + 110.0 * contrasts.len() as f64;
     let mut chart =
         SvgChart::new(width, 320.0, PlotAxis::named(&names), PlotAxis::over("ratio of rates", ends.chain([1.0])));
-    chart.line("thin", &[(-0.5, 1.0), (contrasts.len() as f64 - 0.5, 1.0)]);
+    chart.line("ideal", &[(-0.5, 1.0), (contrasts.len() as f64 - 0.5, 1.0)]);
     for (x, one) in contrasts.iter().enumerate() {
         let x = x as f64;
         let [low, high] = one.interval.map(|end| end.min(LARGEST));
@@ -239,7 +256,7 @@ pub fn ratios(contrasts: &[StudyArmContrast]) -> Option<Markup> {
         chart.point("assisted", x, one.ratio.min(LARGEST), &title);
         chart.words("strong", x + 0.06, one.ratio.min(LARGEST), true, &format!("{:.2}", one.ratio));
     }
-    Some(chart.finish("Ratio of rates between conditions, with intervals of 95 %"))
+    Some(chart.finish("Ratio of rates between conditions, with intervals"))
 }
 
 /// Longest part of a concept's name in the chart of a league, in characters.
@@ -276,7 +293,7 @@ const APART: f64 = 0.05;
 pub fn power(found: &PowerSummary) -> String {
     let sizes: Vec<f64> = found.sizes.iter().map(|size| size.participants as f64).collect();
     let (first, last) = (sizes.first().copied().unwrap_or(0.0), sizes.last().copied().unwrap_or(1.0));
-    let mut names: Vec<(f64, &str)> = Vec::new();
+    let mut names: Vec<(f64, String)> = Vec::new();
     let has_anova = found.needed.iter().any(|needed| needed.test.method == SignificanceTestMethod::MixedAnova);
     let (title, label, line, most) = match found.is_null() {
         true => ("Type I error by number of participants", "studies that find an effect", ALPHA, 0.2),
@@ -287,10 +304,7 @@ pub fn power(found: &PowerSummary) -> String {
     chart.line("thin ideal", &[(first, line), (last, line)]);
     for (index, needed) in found.needed.iter().enumerate() {
         let test = needed.test;
-        if test.against != reference(&found.conditions) {
-            continue;
-        }
-        let class = class(test.arm, test.method);
+        let class = POWER_CLASSES[index % POWER_CLASSES.len()];
         let shares: Vec<[f64; 3]> = found
             .sizes
             .iter()
@@ -305,20 +319,21 @@ pub fn power(found: &PowerSummary) -> String {
             chart.point(class, *x, *share, &format!("{}, {x} participants: {share:.3}", test.title()));
         }
         let name = match (test.method, has_anova) {
-            (SignificanceTestMethod::MixedAnova, _) => "paper's test",
-            (_, true) => "mixed model",
-            (_, false) => test.arm.name(),
+            (SignificanceTestMethod::MixedAnova, _) => "paper's test".to_string(),
+            (_, true) => "mixed model".to_string(),
+            (_, false) => format!("{} to {}", test.arm.name(), test.against.name()),
         };
         names.extend(points.last().map(|(_, share)| (*share, name)));
     }
     for (y, name) in apart(names, APART * most, most) {
-        chart.words("strong", last, y, true, name);
+        chart.words("strong", last, y, true, &name);
     }
+    chart.words("strong", 0.0, most, true, title);
     document(&chart.finish(title), STYLE)
 }
 
 /// Heights of the names at the ends of lines, moved at least `gap` apart and at most `most` high.
-fn apart(mut names: Vec<(f64, &str)>, gap: f64, most: f64) -> Vec<(f64, &str)> {
+fn apart(mut names: Vec<(f64, String)>, gap: f64, most: f64) -> Vec<(f64, String)> {
     names.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut highest = most;
     for (y, _) in &mut names {
@@ -328,17 +343,8 @@ fn apart(mut names: Vec<(f64, &str)>, gap: f64, most: f64) -> Vec<(f64, &str)> {
     names
 }
 
-/// The paper's test and the mixed model have different colours, and so have arms.
-fn class(arm: StudyArm, method: SignificanceTestMethod) -> &'static str {
-    match (method, arm) {
-        (SignificanceTestMethod::MixedAnova, _) | (_, StudyArm::WizardWithAdvice) => "first",
-        (_, StudyArm::None | StudyArm::Wizard) => "second",
-        (_, StudyArm::TomCom) => "tom-com",
-        (_, StudyArm::Tom) => "tom",
-        (_, StudyArm::Dev) => "dev",
-        (_, StudyArm::External) => "external",
-    }
-}
+/// Colours and dashes of the lines of power, in the order of the tests.
+const POWER_CLASSES: [&str; 6] = ["second", "dev", "tom", "external", "first", "unassisted"];
 
 /// Margins around the plot area of a chart, in pixels: left, right, top, bottom.
 const MARGIN: [f64; 4] = [54.0, 14.0, 14.0, 44.0];

@@ -267,11 +267,11 @@ pub fn describe(figures: &InterRaterSummary) -> String {
     for one in &figures.recordings {
         let coded: Vec<String> = one.coded.iter().map(|(rater, number)| format!("{rater} {number}")).collect();
         let coded = match coded.is_empty() {
-            true if one.left_out.is_some() => "need not be coded".to_string(),
+            true if one.left_out.is_some() || one.errors == 0 => "need not be coded".to_string(),
             true => "no rater has coded this recording yet".to_string(),
             false => format!("coded by each rater: {}", coded.join(", ")),
         };
-        let left_out = one.left_out.as_ref().map_or(String::new(), |why| format!(" that do not count ({why})"));
+        let left_out = one.left_out.as_ref().map_or(String::new(), |why| format!(" (the trial does not count: {why})"));
         text += &format!("{}: {}{left_out}, {coded}\n", one.recording, count(one.errors, "error", "errors"));
         text += &one.consensus.as_ref().map_or(String::new(), describe_consensus);
         for identical in &one.identical {

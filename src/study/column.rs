@@ -182,15 +182,24 @@ pub fn described(table: CsvTable) -> Vec<DataDictionaryRow> {
 }
 
 fn declared<Row: CsvRow>() -> Vec<DataDictionaryRow> {
+    entries(Row::columns())
+}
+
+/// Data dictionary entries of these columns.
+pub fn entries<Row: CsvRow>(columns: Vec<TableColumn<Row>>) -> Vec<DataDictionaryRow> {
     let row = |TableColumn { name, unit, meaning, .. }: TableColumn<Row>| DataDictionaryRow {
         table: Row::TABLE,
         column: name,
         unit,
         meaning,
     };
-    Row::columns().into_iter().map(row).collect()
+    columns.into_iter().map(row).collect()
 }
 
-pub fn dictionary() -> impl Iterator<Item = DataDictionaryRow> {
-    CsvTable::ALL.iter().copied().flat_map(described)
+/// The data dictionary of the tables about these trials.
+pub fn dictionary(trials: &[TrialStatistics]) -> impl Iterator<Item = DataDictionaryRow> {
+    CsvTable::ALL.iter().copied().flat_map(|table| match table {
+        CsvTable::Participants => entries(ParticipantRow::columns_of(trials)),
+        table => described(table),
+    })
 }

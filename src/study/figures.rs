@@ -13,7 +13,7 @@ use crate::facts::RecordingFacts;
 use crate::frozen_plan::PreregistrationCheck;
 use crate::live_arms::{SignalSenderResults, live_arms};
 use crate::pass::reading::WaivedPractice;
-use crate::planned_trial::{MissingTrials, RecordingCopy};
+use crate::planned_trial::{ForeignRecording, MissingTrials, RecordingCopy};
 use crate::rater_episodes::RaterFalseBeliefAgreement;
 use crate::robot_tally::{RobotArmTotals, by_arm};
 use crate::roc::{ConceptRocCurve, compare};
@@ -55,6 +55,9 @@ pub struct StudySummary {
     pub corrections: Vec<CorrectedRecording>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub copies: Vec<RecordingCopy>,
+    /// Recordings beside those of the study that are not analysed; absent if there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub foreign: Vec<ForeignRecording>,
     pub conditions: Vec<StudyConditionSummary>,
     pub primary_outcome: PrimaryOutcome,
     /// Effect of assistance on errors per human press: the interaction of period and starting group.
@@ -185,7 +188,7 @@ impl StudySummary {
             Some(StaleConsensus { recording: trial.recording.clone(), reason })
         });
         StudySummary {
-            title: title(facts, trials, simulated_participants),
+            title: title(facts, simulated_participants),
             simulated_participants,
             trials: counting.len() as u64,
             participants: participants.len() as u64,
@@ -196,6 +199,7 @@ impl StudySummary {
             preregistration: None,
             missing_trials: Vec::new(),
             copies: Vec::new(),
+            foreign: Vec::new(),
             corrections: Vec::new(),
             conditions,
             primary_outcome: counting.iter().find_map(|trial| trial.aims).unwrap_or_default().outcome,
@@ -249,14 +253,9 @@ fn least_reliable<'a>(trials: impl Iterator<Item = &'a &'a TrialStatistics>) -> 
     trials.filter_map(|trial| trial.beliefs.as_ref()).map(|beliefs| beliefs.basis).max()
 }
 
-fn title(facts: &RecordingFacts, trials: &[TrialStatistics], simulated: bool) -> String {
+fn title(facts: &RecordingFacts, simulated: bool) -> String {
     let kitchen = facts.all("kitchen").unwrap_or_else(|| "No kitchen".to_string());
-    let people = trials.iter().any(|trial| trial.kind != ParticipantKind::Simulated);
-    match (simulated, people) {
-        (true, false) => format!("{kitchen}: a study of simulated participants"),
-        (true, true) => format!("{kitchen}: a study of people and simulated participants"),
-        (false, _) => format!("{kitchen}: a study"),
-    }
+    if simulated { format!("{kitchen}: a study of simulated participants") } else { format!("{kitchen}: a study") }
 }
 
 /// Pairs of raters in words: "R1 and R2", with their numbers of trials if there are several pairs.

@@ -193,11 +193,14 @@ pub struct PreregistrationCheck {
     pub recordings_before: u64,
     /// Differences between study and frozen plan, in words; empty if there are none.
     pub differences: Vec<String>,
+    /// Codes of the plan's participants of whom there is no recording yet.
+    pub to_come: Vec<String>,
 }
 
 impl PreregistrationCheck {
-    /// Compares recordings, and this version's definitions, with the frozen plan that has this digest.
-    pub fn new(digest: String, frozen: &FrozenPlan, recordings: &[RecordedPlan]) -> PreregistrationCheck {
+    /// Compares recordings, and this version's definitions, with the frozen plan that has this digest. `ended`: number of
+    /// trials that count though the wizard ended them.
+    pub fn new(digest: String, frozen: &FrozenPlan, recordings: &[RecordedPlan], ended: u64) -> PreregistrationCheck {
         let mut differences = frozen.differs_from_program();
         let mut others: BTreeMap<String, u64> = BTreeMap::new();
         for recording in recordings {
@@ -220,12 +223,14 @@ impl PreregistrationCheck {
         let there: BTreeSet<&str> = own.map(|recording| recording.participant.as_str()).collect();
         let is_planned = |code: &&&str| frozen.participants.iter().any(|planned| planned == **code);
         let strangers: Vec<&str> = there.iter().filter(|code| !is_planned(code)).copied().collect();
-        let missing = frozen.participants.iter().map(String::as_str).filter(|code| !there.contains(code));
-        for (who, codes) in [("without a recording", missing.collect()), ("not in the frozen plan", strangers)] {
-            differences.extend(named(who, &codes));
+        let to_come = frozen.participants.iter().filter(|code| !there.contains(code.as_str())).cloned().collect();
+        differences.extend(named("not in the frozen plan", &strangers));
+        if ended > 0 {
+            differences
+                .push(format!("the wizard ended {} early", count(ended, "trial that counts", "trials that count")));
         }
         let (plan, recordings_before) = (frozen.plan.clone(), frozen.recordings_before);
-        PreregistrationCheck { digest, plan, recordings_before, differences }
+        PreregistrationCheck { digest, plan, recordings_before, differences, to_come }
     }
 
     pub fn words(&self) -> String {
@@ -234,10 +239,19 @@ impl PreregistrationCheck {
             number => format!("when {} of it there", count(number, "recording was", "recordings were")),
         };
         let frozen = format!("the plan \"{}\" was frozen {before}, SHA-256 {}", self.plan, self.digest);
-        match &self.differences[..] {
-            [] => format!("Preregistered: {frozen}; plan, definitions and analysis are those."),
+        let to_come = match &self.to_come[..] {
+            [] => String::new(),
+            codes => {
+                let are = count(codes.len() as u64, "participant has", "participants have");
+                format!(" {are} no recording so far: {}.", codes.join(", "))
+            }
+        };
+        let so_far = if to_come.is_empty() { "Preregistered" } else { "So far as preregistered" };
+        let told = match &self.differences[..] {
+            [] => format!("{so_far}: {frozen}; plan, definitions and analysis are those."),
             several => format!("Not as preregistered: {frozen}; differences: {}.", several.join("; ")),
-        }
+        };
+        told + &to_come
     }
 }
 

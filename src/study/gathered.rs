@@ -14,15 +14,26 @@ use crate::planned_trial::{PlannedTrialKey, RecordingCopy, copy_with_codes};
 use crate::{parallel, standing};
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::log::{LOG_NAME, LogReader, SameLogs, code_files, differing_codes, header_digest, ruling};
+use tomcom_session::settings::ParticipantKind;
 use tomcom_session::{LogHeader, person_code};
 
 #[derive(Clone, Debug, Default)]
 pub struct GatheredRecordings {
     /// Paths of the recordings, in the order in which they were named; those of a folder are sorted by name.
     pub paths: Vec<PathBuf>,
-    /// In the order of `paths`: the code of the participant, and the plan; a tutorial alone is of the plan that has it.
-    pub places: Vec<(String, Option<String>)>,
+    /// In the order of `paths`.
+    pub places: Vec<GatheredPlace>,
     pub copies: Vec<RecordingCopy>,
+}
+
+/// Whose recording it is, and of which plan.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct GatheredPlace {
+    /// Of the participant.
+    pub code: String,
+    /// A tutorial alone is of the plan that has it.
+    pub plan: Option<String>,
+    pub is_simulated: bool,
 }
 
 /// A log of a recording: its path without symbolic links, and the digest of its header.
@@ -31,10 +42,9 @@ type LogPlace = (PathBuf, String);
 struct FoundRecording {
     path: PathBuf,
     logs: Vec<LogPlace>,
-    code: String,
+    place: GatheredPlace,
     /// Whether the folder has the name that the program gave it, as far as that can be seen: it names the participant.
     is_named: bool,
-    plan: Option<String>,
     trial: Option<PlannedTrialKey>,
 }
 
@@ -135,8 +145,7 @@ impl GatheredRecordings {
             }
         }
         check_kinds(&opened, &trials)?;
-        let place = |index: &usize| (opened[*index].code.clone(), opened[*index].plan.clone());
-        let places = kept.iter().map(place).collect();
+        let places = kept.iter().map(|&index| opened[index].place.clone()).collect();
         let paths = kept.into_iter().map(|index| opened[index].path.clone()).collect();
         let copies = order.iter().filter_map(|index| copies.remove(index)).collect();
         Ok(GatheredRecordings { paths, places, copies })
@@ -165,11 +174,13 @@ impl FoundRecording {
             Ok((log.canonicalize().map_err(unreadable)?, digest))
         };
         let logs = log.logs().into_iter().map(place).collect::<FileResult<Vec<LogPlace>>>()?;
-        let (code, recorded_code) = (log.header.session.participant.code.clone(), log.header.recorded_code());
+        let (participant, recorded_code) = (&log.header.session.participant, log.header.recorded_code());
         let trial = planned_trial(&log.header);
         let is_named = logs.last().is_some_and(|(log, _)| folder_name(log).contains(recorded_code));
         let plan = log.header.session.step.as_ref().map(|step| step.plan_of_study().to_string());
-        Ok(FoundRecording { path: path.to_path_buf(), logs, code, is_named, plan, trial })
+        let is_simulated = participant.kind == ParticipantKind::Simulated;
+        let place = GatheredPlace { code: participant.code.clone(), plan, is_simulated };
+        Ok(FoundRecording { path: path.to_path_buf(), logs, place, is_named, trial })
     }
 
     fn log(&self) -> &PathBuf {
@@ -186,8 +197,11 @@ impl FoundRecording {
         let [recording, copy_of] = [self, first].map(|one| one.path.display().to_string());
         let wrong = |(found, remedy): (String, String)| Err(FileError::from_finding(&self.path, found, remedy));
         if left_out.is_none() {
-            if self.code != first.code {
-                let found = format!("a copy of {copy_of} that is a recording of {}, not of {}", self.code, first.code);
+            if self.place.code != first.place.code {
+                let found = format!(
+                    "a copy of {copy_of} that is a recording of {}, not of {}",
+                    self.place.code, first.place.code
+                );
                 let remedy = "one code of both (tomcom correct RECORDING --code CODE --why …, or --undo); or leave this copy \
                               out: tomcom exclude RECORDING --reason …";
                 return wrong((found, remedy.to_string()));
@@ -243,13 +257,13 @@ fn check_kinds(opened: &[FoundRecording], trials: &BTreeMap<&PlannedTrialKey, Ve
 fn check_codes(opened: &[FoundRecording]) -> FileResult<()> {
     let mut codes: BTreeMap<&str, &Path> = BTreeMap::new();
     for one in opened {
-        if let Some(other) = person_code::differing_in_case(&one.code, codes.keys().copied()) {
+        if let Some(other) = person_code::differing_in_case(&one.place.code, codes.keys().copied()) {
             let first = codes[other].display();
-            let found = format!("a recording of {}, beside {first}, which is one of {other}", one.code);
+            let found = format!("a recording of {}, beside {first}, which is one of {other}", one.place.code);
             let remedy = "one code of one participant: tomcom correct RECORDING --code CODE --why …".to_string();
             return Err(FileError::from_finding(&one.path, found, remedy));
         }
-        codes.entry(&one.code).or_insert(&one.path);
+        codes.entry(&one.place.code).or_insert(&one.path);
     }
     Ok(())
 }

@@ -3,22 +3,25 @@
 
 use std::collections::BTreeMap;
 
-use crate::arm_comparison::{StudyArmComparison, StudyArmContrast, StudyConditionSummary};
-use crate::effect::LEVEL;
+use crate::arm_comparison::{ContrastVerdict, StudyArmComparison, StudyArmContrast, StudyConditionSummary};
 use crate::figures::StudySummary;
 use tomcom_core::base::text::count;
 use tomcom_core::measures::raters::BeliefSource;
 use tomcom_session::plan::PrimaryOutcome;
+use tomcom_session::study_arm::StudyArm;
 
 /// Why the quotient of two rates is not the ratio beside them.
 pub const RATES_AND_RATIO: &str = "Rates pool all presses of a condition; the ratio compares the trials within participants (mixed model, the \
-                                   number of the trial accounted for), so it need not be their quotient.";
+                                   number of the trial accounted for), so it need not be their quotient. Its interval has the level at which \
+                                   Holm's correction tests it: it is without 1 where the corrected p is below 0.05.";
 
 /// One sentence for each contrast of the primary outcome: both rates, their ratio with its interval, and whether that
-/// shows a difference. Empty without trials that count.
+/// shows a difference; before them, if there are several, one that says what they show together. Empty without trials
+/// that count.
 pub fn primary_outcome(figures: &StudySummary) -> Vec<String> {
     if let Some(found) = &figures.arms {
-        return found.contrasts.iter().map(|one| contrast(found, one)).collect();
+        let together = (found.contrasts.len() > 1).then(|| answer(found));
+        return together.into_iter().chain(found.contrasts.iter().map(|one| contrast(found, one))).collect();
     }
     let (outcome, conditions) = (figures.primary_outcome, &figures.conditions);
     let rates: Vec<String> = conditions.iter().map(|one| rate(one, outcome)).collect();
@@ -31,33 +34,68 @@ pub fn primary_outcome(figures: &StudySummary) -> Vec<String> {
 }
 
 fn rate(one: &StudyConditionSummary, outcome: PrimaryOutcome) -> String {
-    let per_100 = match outcome {
+    let per_100 = per_100(one, outcome).map_or("not known".to_string(), |rate| format!("{rate:.1}"));
+    format!("{} {per_100}", one.condition.title())
+}
+
+/// Of the outcome, per 100 presses of the human in this condition.
+pub(crate) fn per_100(one: &StudyConditionSummary, outcome: PrimaryOutcome) -> Option<f64> {
+    match outcome {
         PrimaryOutcome::Errors => one.totals.error_rate_human.map(|rate| 100.0 * rate),
         PrimaryOutcome::BeliefRelatedErrors => one.totals.belief_related_per_100,
         PrimaryOutcome::Sequences => one.totals.sequences_per_100,
+    }
+}
+
+/// What the contrasts say together, in one sentence.
+fn answer(found: &StudyArmComparison) -> String {
+    let outcome = found.outcome.title();
+    let mut groups: Vec<(ContrastVerdict, bool, StudyArm, Vec<&str>)> = Vec::new();
+    for one in &found.contrasts {
+        let (verdict, is_fewer) = (one.verdict(), one.ratio < 1.0);
+        let is_same = |group: &&mut (ContrastVerdict, bool, StudyArm, Vec<&str>)| {
+            let is_alike = group.1 == is_fewer || verdict == ContrastVerdict::NoDifference;
+            group.0 == verdict && group.2 == one.against && is_alike
+        };
+        match groups.iter_mut().find(is_same) {
+            Some(group) => group.3.push(one.arm.title()),
+            None => groups.push((verdict, is_fewer, one.against, vec![one.arm.title()])),
+        }
+    }
+    let participants = count(found.participants as u64, "participant", "participants");
+    let words = |(verdict, is_fewer, against, arms): (ContrastVerdict, bool, StudyArm, Vec<&str>)| {
+        let (arms, against) = (arms.join(" and in "), against.title());
+        let differ =
+            format!("{} {outcome} in {arms} trials than in {against} trials", if is_fewer { "fewer" } else { "more" });
+        match verdict {
+            ContrastVerdict::Shown => differ,
+            ContrastVerdict::Uncertain => format!("perhaps {differ}, which is not certain with {participants}"),
+            ContrastVerdict::NoDifference => {
+                format!("no difference shown between {} and {against} trials", arms.replace(" and in ", ", "))
+            }
+        }
     };
-    let per_100 = per_100.map_or("not known".to_string(), |rate| format!("{rate:.1}"));
-    format!("{} {per_100}", one.condition.title())
+    let text = groups.into_iter().map(words).collect::<Vec<_>>().join("; ");
+    let first = text.chars().next().map_or(0, char::len_utf8);
+    format!("{}{}.", text[..first].to_uppercase(), &text[first..])
 }
 
 fn contrast(found: &StudyArmComparison, one: &StudyArmContrast) -> String {
     let rate = |arm| found.arms.iter().find(|counts| counts.arm == arm).map_or(f64::NAN, |counts| counts.per_100());
     let ([low, high], contrasts) = (one.interval, found.contrasts.len());
     let (arm, against) = (one.arm.title(), one.against.title());
-    // An interval is that of its contrast alone; of several contrasts some spans nothing by chance.
     let corrected = match contrasts {
         1 => String::new(),
         _ => format!(" ({} corrected for {contrasts} contrasts)", p_value(one.p_holm)),
     };
     let interval = match low.is_finite() && high.is_finite() {
-        true => format!("{:.0} % interval {low:.2} to {high:.2}", 100.0 * LEVEL),
+        true => format!("{} interval {low:.2} to {high:.2}", level(one.level)),
         false => "too few trials for an interval".to_string(),
     };
-    let is_shown = (high < 1.0 || low > 1.0) && (contrasts == 1 || one.p_holm < 1.0 - LEVEL);
-    let verdict = match (is_shown, high < 1.0) {
-        (false, _) => "no difference shown".to_string(),
-        (true, true) => format!("fewer in {arm} trials than in {against} trials"),
-        (true, false) => format!("more in {arm} trials than in {against} trials"),
+    let verdict = match (one.verdict(), one.ratio < 1.0) {
+        (ContrastVerdict::Shown, true) => format!("fewer in {arm} trials than in {against} trials"),
+        (ContrastVerdict::Shown, false) => format!("more in {arm} trials than in {against} trials"),
+        _ => "no difference shown".to_string(),
     };
     format!(
         "Primary outcome, {} per 100 presses of the human: {arm} {:.1}, {against} {:.1}; ratio {:.2}, {interval}: \
@@ -67,6 +105,12 @@ fn contrast(found: &StudyArmComparison, one: &StudyArmContrast) -> String {
         rate(one.against),
         one.ratio,
     )
+}
+
+/// A confidence level as text: "95 %", "98.3 %".
+pub(crate) fn level(level: f64) -> String {
+    let percent = format!("{:.1}", 100.0 * level);
+    format!("{} %", percent.strip_suffix(".0").unwrap_or(&percent))
 }
 
 /// A p value as text: "p = 0.123", or "p < 0.001".
@@ -96,16 +140,17 @@ pub fn mixed_sources(figures: &StudySummary) -> Option<(String, bool)> {
     }
     let of =
         |one: &StudyConditionSummary| format!("{}: {}", one.condition.title(), sources(&one.totals.belief_sources));
-    let words = figures.conditions.iter().map(of).collect::<Vec<_>>().join("; ");
+    // Where nobody erred there was no cause to be known.
+    let with_errors: Vec<&StudyConditionSummary> =
+        figures.conditions.iter().filter(|one| one.totals.errors > 0).collect();
+    let words = with_errors.iter().copied().map(of).collect::<Vec<_>>().join("; ");
     let is_like = |one: &BTreeMap<BeliefSource, u64>, other: &BTreeMap<BeliefSource, u64>| {
         let [all, others]: [u64; 2] = [one, other].map(|sources| sources.values().sum());
         let share = |sources: &BTreeMap<BeliefSource, u64>, source| sources.get(source).copied().unwrap_or(0);
         one.keys().chain(other.keys()).all(|source| share(one, source) * others == share(other, source) * all)
     };
-    let differs = figures
-        .conditions
-        .windows(2)
-        .any(|pair| !is_like(&pair[0].totals.belief_sources, &pair[1].totals.belief_sources));
+    let differs =
+        with_errors.windows(2).any(|pair| !is_like(&pair[0].totals.belief_sources, &pair[1].totals.belief_sources));
     let warning = match differs {
         true => {
             "; so the conditions are measured differently, and what rests on causes (belief related errors, sequences) cannot be compared"

@@ -2,7 +2,6 @@
 //! without a recording.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
 
@@ -39,21 +38,11 @@ impl PlannedTrialKey {
         (&self.plan, &self.code) == (&other.plan, &other.code)
     }
 
-    /// The first and the last possible trial of this code in this plan.
-    pub(crate) fn of_code(&self) -> RangeInclusive<PlannedTrialKey> {
-        let with = |seed, period| PlannedTrialKey { seed, period, ..self.clone() };
-        with(None, 0)..=with(Some(u64::MAX), u32::MAX)
-    }
-
-    /// What is wrong if the recording `first` is one of [`is_mixed_with`](PlannedTrialKey::is_mixed_with); and what would be
-    /// right.
+    /// What is wrong about a simulated recording if `first` is a live one of the same code; and what would be right.
     pub(crate) fn mixed_with(&self, first: &str) -> (String, String) {
-        let PlannedTrialKey { plan, code, seed, .. } = self;
-        let [own, others] = match seed {
-            Some(_) => ["a simulated recording", "was recorded live"],
-            None => ["a live recording", "is simulated"],
-        };
-        let found = format!("{own} of {code} in the plan \"{plan}\", beside {first}, which {others}");
+        let PlannedTrialKey { plan, code, .. } = self;
+        let found =
+            format!("a simulated recording of {code} in the plan \"{plan}\", beside {first}, which was recorded live");
         let remedy = "simulated recordings in a folder of their own; or leave the one or the other out: tomcom exclude FOLDER \
                       --code CODE --reason …, or RECORDING --reason …";
         (found, remedy.to_string())
@@ -80,6 +69,57 @@ pub struct RecordingCopy {
     pub copy_of: String,
     /// Why the copy would be left out anyway, in words; null if it would count.
     pub left_out: Option<String>,
+}
+
+/// A recording that is none of the study's, though it lies beside them.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ForeignRecording {
+    pub reason: ForeignReason,
+    pub recording: String,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ForeignReason {
+    /// Beside recordings of a plan.
+    NoPlan,
+    /// Beside recordings of people.
+    Simulated,
+}
+
+impl ForeignReason {
+    fn words(self) -> &'static str {
+        match self {
+            ForeignReason::NoPlan => "of no plan, beside those of a plan",
+            ForeignReason::Simulated => "of a simulated participant, beside those of people",
+        }
+    }
+}
+
+pub fn foreign_in_words(foreign: &[ForeignRecording]) -> Option<String> {
+    let group = |group: &[ForeignRecording]| {
+        let named: Vec<&str> = group.iter().take(NAMED).map(|one| one.recording.as_str()).collect();
+        let more = match group.len().saturating_sub(NAMED) {
+            0 => String::new(),
+            more => format!(", and {more} more"),
+        };
+        let are = count(group.len() as u64, "recording is", "recordings are");
+        format!("{are} {}, and left out: {}{more}", group[0].reason.words(), named.join(", "))
+    };
+    let groups: Vec<String> = foreign.chunk_by(|a, b| a.reason == b.reason).map(group).collect();
+    (!groups.is_empty()).then(|| groups.join("; "))
+}
+
+/// What is wrong if people's and simulated recordings are in one study, of which `first` is the other kind; and what would
+/// be right.
+pub(crate) fn mixed_kinds(is_simulated: bool, first: &str) -> (String, String) {
+    let [own, others] = match is_simulated {
+        true => ["a simulated participant", "a person"],
+        false => ["a person", "a simulated participant"],
+    };
+    let remedy = "parts of recordings of people, or of simulated ones";
+    (format!("a recording of {own}, beside {first}, which is of {others}"), remedy.to_string())
 }
 
 pub fn copies_in_words(copies: &[RecordingCopy]) -> Option<String> {

@@ -303,7 +303,7 @@ pub fn describe(found: &PowerSummary) -> String {
     };
     let studies = found.sizes.first().and_then(|size| size.tests.first()).map_or(0, |one| one.found.studies);
     let mut text = format!(
-        "plan {} ({}), outcome: {} per press of the participant; {} for each number of participants, drawn from {} (seed \
+        "plan {} ({}), outcome: {} per press of the human; {} for each number of participants, drawn from {} (seed \
          {}); {effect}\n",
         found.plan,
         found.digest,
@@ -334,7 +334,12 @@ fn in_numbers(found: &RejectionShare) -> String {
 
 fn describe_test(found: &PowerSummary, index: usize) -> String {
     let what = if found.is_null() { "type I error" } else { "power" };
-    let mut text = format!("{}: {what} (interval of 95 % with the pool's error)\n", found.needed[index].test.title());
+    let needed = &found.needed;
+    let test = needed[index].test;
+    let contrasts = needed.iter().filter(|other| other.test.method == SignificanceTestMethod::LinearMixedModel).count();
+    let is_corrected = test.method == SignificanceTestMethod::LinearMixedModel && contrasts > 1;
+    let corrected = if is_corrected { ", corrected for the number of contrasts (Holm)" } else { "" };
+    let mut text = format!("{}{corrected}: {what} (interval of 95 % with the pool's error)\n", test.title());
     for size in &found.sizes {
         let one = &size.tests[index];
         let least = one.least_ratio.map_or(String::new(), |ratio| format!(", least effect: ratio {ratio:.2}"));
@@ -353,13 +358,13 @@ fn power_in_words(found: &PowerSummary, needed: &RequiredSampleSize, index: usiz
     let mut text = match (needed.participants, needed.surely) {
         (Some(enough), Some(surely)) if surely > enough => {
             format!(
-                "  {enough} participants are needed for a power of {WANTED}; {surely} to be sure of it, as the pool is finite."
+                "  Of the numbers tried, {enough} is the least with a power of {WANTED}; {surely} to be sure of it, as the pool is finite."
             )
         }
-        (Some(enough), Some(_)) => format!("  {enough} participants are needed for a power of {WANTED}."),
+        (Some(enough), Some(_)) => format!("  Of the numbers tried, {enough} is the least with a power of {WANTED}."),
         (Some(enough), None) => {
             format!(
-                "  {enough} participants are needed for a power of {WANTED}; the pool is too small to be sure of it."
+                "  Of the numbers tried, {enough} is the least with a power of {WANTED}; the pool is too small to be sure of it."
             )
         }
         (None, _) if found.sizes.last().is_some_and(|size| size.tests[index].found.interval[1] >= WANTED) => {

@@ -23,13 +23,13 @@ use serde::{Deserialize, Serialize};
 use crate::facts::RecordingFacts;
 use crate::frozen_plan::RecordedPlan;
 use crate::pass::reading::{RecordedConsent, WaivedPractice};
-use crate::planned_trial::{PlannedTrialKey, RecordingCopy};
+use crate::planned_trial::{ForeignRecording, PlannedTrialKey, RecordingCopy};
 use crate::tables::participants::TutorialQuestionRow;
 use crate::trial_statistics::{TrialDetails, TrialStatistics};
 use tomcom_session::header::{CodeCorrection, RecordedFile};
 use tomcom_session::plan::PlanPosition;
 
-pub(crate) const PART_FORMAT: u32 = 5;
+pub(crate) const PART_FORMAT: u32 = 6;
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -44,6 +44,8 @@ pub struct PartHeader {
     pub left_out: BTreeSet<String>,
     /// Recordings that were left out, since they are copies of others.
     pub copies: BTreeSet<RecordingCopy>,
+    /// Recordings that were left out, since they are none of the study's.
+    pub foreign: BTreeSet<ForeignRecording>,
     pub analysis: PartAnalysisOptions,
     /// The study plans to which the recordings belong, each with its digest; empty for recordings without a plan.
     pub plans: BTreeSet<(String, String)>,

@@ -234,7 +234,7 @@ pub fn describe(found: &Tournament) -> String {
         text += &format!(" | {ms} | {} |\n", told.map_or(own.clone(), |told| format!("{told} {own}")));
     }
     text += &format!(
-        "\nper 100 presses of the participant; differences to unassisted trials of the same seeds; in brackets intervals of \
+        "\nper 100 presses of the human; differences to unassisted trials of the same seeds; in brackets intervals of \
          95 %, by a bootstrap over trials\nnet saving: presses that errors cost less, minus {PAPERS_COST} for each signal\n"
     );
     for row in found.concepts.iter().filter(|row| row.faults > 0) {

@@ -125,6 +125,38 @@ fn one_plan_is_analysed_and_several_only_if_each_is_named() {
     assert_eq!(find(&["another"]), Ok(2));
 }
 
+/// What was tried in the study's folder is none of the study: it is left out, and named in the terminal and in the report.
+#[test]
+fn what_is_none_of_the_study_is_left_out_and_named() {
+    let root = folder("foreign");
+    let (log, out) = (log(&root), root.join("sessions"));
+    let person = |code: &'static str| {
+        move |header: &mut Value| {
+            header["session"]["participant"]["code"] = json!(code);
+            header["session"]["participant"]["kind"] = json!("display");
+        }
+    };
+    record(&out.join("P01-1"), &log, person("P01"));
+    record(&out.join("P02-1"), &log, |header| header["session"]["participant"]["code"] = json!("P02"));
+    // "tomcom" without a plan records the code of the default session.
+    record(&out.join("tried"), &log, |header| {
+        person("P01")(header);
+        header["session"].as_object_mut().expect("settings").remove("step");
+    });
+    let extent = AnalysisScope { concepts: false, events: false };
+    let request =
+        AnalysisRequest { paths: vec![out], out: folder("foreign-results"), extent, raters: None, frozen: None };
+    for plans in [vec![], vec!["paper".to_string()]] {
+        let found = NamedRecordings::find(&request.paths, &plans).expect("recordings");
+        let (figures, report) = pass::study(&request, &found, || ()).expect("analysed");
+        assert_eq!((figures.trials, figures.participants, figures.simulated_participants), (1, 1, false));
+        let words = "1 recording is of no plan, beside those of a plan, and left out: tried; 1 recording is of a simulated \
+                     participant, beside those of people, and left out: P02-1";
+        assert!(describe(&figures).contains(words), "{}", describe(&figures));
+        assert!(fs::read_to_string(report).expect("a report").contains(words));
+    }
+}
+
 #[test]
 fn two_recordings_that_count_for_one_trial_are_refused_with_both_names() {
     let root = folder("twice");

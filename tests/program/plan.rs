@@ -243,7 +243,7 @@ fn check_excluded_trial_is_repeated(terminal: &Terminal, session: &str, out: &st
     choose(terminal, "1");
     terminal.see("2  repeat trial 2");
     choose(terminal, "2");
-    terminal.see("A1 trial 2/2, attempt 2");
+    terminal.see("A1, trial 2/2, attempt 2");
     terminal.begin();
     terminal.quit();
 }

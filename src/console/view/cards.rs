@@ -22,7 +22,7 @@ use tomcom_core::kitchen::{Agent, Dish};
 use tomcom_core::robot::SafetyMode;
 use tomcom_session::event::Event;
 use tomcom_session::history::{event_words, wording};
-use tomcom_session::settings::{Condition, ParticipantKind};
+use tomcom_session::settings::{Condition, GazeSource, ParticipantKind};
 use tomcom_session::{Session, TimelineEvent, TrialPhase};
 
 /// Width of a card, and least width of the names in its left column.
@@ -108,6 +108,10 @@ fn before(session: &Session, model: &ConsoleModel) -> Card {
     keys.extend(model.keys.chord_for(&KeyAction::Advance).map(|key| (key, "start the trial".to_string())));
     let preflight = KeyAction::Manual(ManualAction::Preflight);
     keys.extend(model.keys.chord_for(&preflight).map(|key| (key, "show all preflight checks".to_string())));
+    let is_tracked = matches!(session.spec.participant.gaze, GazeSource::Json | GazeSource::Lsl | GazeSource::Pupil);
+    let is_open = session.calibrated.is_none() && is_tracked;
+    let check = model.keys.chord_for(&KeyAction::Manual(ManualAction::Calibrate)).filter(|_| is_open);
+    keys.extend(check.map(|key| (key, "check the accuracy of gaze, which is not checked yet".to_string())));
     Card { title: "Ready to start".to_string(), facts, keys }
 }
 

@@ -10,7 +10,7 @@ use super::theme::TextRole;
 use crate::console::chord::KeyChord;
 use crate::console::console_model::{ConsoleModel, Dialog};
 use crate::console::form;
-use crate::console::key_action::{KeyAction, KeyBinding};
+use crate::console::key_action::{KeyAction, KeyBinding, ManualAction};
 use crate::console::lists::{self, ListCursor, OTHER_REASON, Picker};
 use crate::console::mouse::ClickAction;
 use crate::console::possible::is_possible_behind;
@@ -44,7 +44,11 @@ pub fn draw(brush: &mut Painter, screen: Rect, regions: &PanelAreas, session: &S
         Some(Dialog::Report(lines)) => report(brush, screen, lines, model),
         Some(Dialog::EndTrial) => {
             let yes = yes_keys(model, &KeyAction::EndTrial);
-            ask(brush, screen, "End the trial?", &["A trial that was ended cannot be resumed."], &yes);
+            let presses = format!("{} of {} presses", session.all_presses(), session.spec.trial.presses);
+            let abort = model.keys.chord_for(&KeyAction::Manual(ManualAction::Abort));
+            let abort = abort.map_or(String::new(), |key| format!("{key} aborts it instead: then it does not count."));
+            let counts = format!("It counts with {presses}, and cannot be resumed.");
+            ask(brush, screen, "End the trial?", &[&counts, &abort], &yes);
         }
         Some(Dialog::EndTutorial) => {
             let lines = ["The participant does not see its other pages,", "and cannot go back to it."];
@@ -74,7 +78,8 @@ fn yes_keys(model: &ConsoleModel, action: &KeyAction) -> String {
 
 /// Draws a yes-or-no question with the keys that answer it.
 fn ask(brush: &mut Painter, screen: Rect, title: &str, lines: &[&str], yes: &str) {
-    let inside = open(brush, screen, (46, lines.len() as u16 + 5), title, "");
+    let widest = lines.iter().map(|line| width(line)).max().unwrap_or(0);
+    let inside = open(brush, screen, ((widest + 5).max(46), lines.len() as u16 + 5), title, "");
     for (row, line) in lines.iter().enumerate() {
         brush.parts(inside.x + 2, inside.y + 1 + row as u16, inside.width - 3, &[(line, TextRole::Text)]);
     }

@@ -191,7 +191,7 @@ pub(super) fn onward(session: &Session, model: &ConsoleModel) -> Option<String> 
     let (step, _) = session.step().filter(|_| session.phase != TrialPhase::Closed)?;
     Some(match session.next_phase() {
         _ if session.aborted.is_some() => "repeat the trial".to_string(),
-        Some(phase) => format!("next phase: {}", phase.name()),
+        Some(phase) => format!("next phase: {}", phase.title()),
         None if step.is_tutorial_alone() => "leave the tutorial".to_string(),
         None if model.is_last_recording => "end the series".to_string(),
         None => "next recording".to_string(),

@@ -61,7 +61,15 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
             let step = session.step().filter(|_| model.playback.is_none());
             let code = part(session.spec.participant.code.clone(), strong, 0);
             parts.push(HeadPart { is_close: step.is_some(), ..code });
-            parts.extend(step.map(|(step, _)| HeadPart { is_close: true, ..part(step.label(), strong, 3) }));
+            if let Some((step, _)) = step {
+                let label = step.label();
+                let (trial, attempt) = label.split_once(", ").unwrap_or((&label, ""));
+                parts.push(HeadPart { is_close: true, ..part(trial.to_string(), strong, TRIAL) });
+                // The states of the devices come before the number of the attempt.
+                if !attempt.is_empty() {
+                    parts.push(HeadPart { is_close: true, ..part(attempt.to_string(), strong, TRIAL + 1) });
+                }
+            }
             parts.push(part(condition(session).to_string(), strong, 1));
         }
     }

@@ -221,7 +221,7 @@ fn item_form(page: &mut Page, form: &AnswerFormat, given: Option<&AnswerValue>) 
             (format!("1-{}", options.len()), if *several { "choose several" } else { "choose one" })
         }
         AnswerFormat::Number { range: [least, most], unit } => {
-            let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+            let unit = if unit.is_empty() { String::new() } else { format!(" ({unit})") };
             page.text(0, &format!("a number from {least} to {most}{unit}"), TextRole::Quiet);
             typed(page, form, given);
             ("0-9".to_string(), "type number")
@@ -288,7 +288,7 @@ fn draw_failed(pen: &mut Pen, screen: Rect, where_: &str, session: &Session, mod
         ("enter", if waiver.is_some() { "waive for this reason" } else { "practise again" }, plain(KeyCode::Enter)),
         (waivers.as_str(), "choose a reason", None),
         ("letters", "its words", None),
-        ("bksp", "no reason", plain(KeyCode::Backspace)),
+        ("bksp", "none", plain(KeyCode::Backspace)),
     ];
     let hints = if waiver.is_some() { &hints } else { &hints[..3] };
     page.draw(pen, screen, "The practice criterion is not met", where_, hints);

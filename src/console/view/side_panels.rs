@@ -233,6 +233,10 @@ pub fn draw_display(brush: &mut Painter, regions: &PanelAreas, session: &Session
 
 /// Draws the present signal with its remaining time in one line.
 fn display_line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
+    if session.calibration.as_ref().is_some_and(|check| check.shown.is_some()) {
+        brush.parts(x, y, columns, &[("a target of the gaze check", TextRole::Strong)]);
+        return;
+    }
     let start = model.keys.chord_for(&KeyAction::Advance).filter(|_| session.phase == TrialPhase::Ready);
     if let Some(key) = start {
         let key = key.to_string();

@@ -115,6 +115,9 @@ pub fn measure(viewing: &ViewingGeometry, targets: &[[f64; 2]], samples: &[Vec<G
     })
 }
 
+/// Gaze that moves less than this over all targets, in fractions of the display, is no one's.
+const STILL: f64 = 0.01;
+
 /// Ways in which a sender may mean its coordinates, in words, and the point of the display that is then looked at.
 type Reading = (&'static str, fn([f64; 2]) -> [f64; 2]);
 const READINGS: [Reading; 5] = [
@@ -142,6 +145,13 @@ pub fn mistaken_coordinates(
     };
     if off_deg(|point| point)? <= USABLE_DEG {
         return None;
+    }
+    let all = || samples.iter().flatten();
+    let spread = |axis: fn(&GazeSample) -> f64| {
+        all().map(axis).fold(f64::NEG_INFINITY, f64::max) - all().map(axis).fold(f64::INFINITY, f64::min)
+    };
+    if spread(|sample| sample.x) < STILL && spread(|sample| sample.y) < STILL {
+        return Some("x and y do not follow the targets, but stay the same");
     }
     let tried = READINGS.iter().filter_map(|(words, read)| Some((off_deg(*read)?, *words)));
     let best = tried.min_by(|(a, _), (b, _)| a.total_cmp(b));

@@ -142,6 +142,11 @@ impl KitchenWords {
         KitchenWords(languages)
     }
 
+    /// All languages with words, and these.
+    pub fn languages(&self) -> impl Iterator<Item = (&str, &BTreeMap<String, String>)> {
+        self.0.iter().map(|(language, words)| (language.as_str(), words))
+    }
+
     /// The words for names in this language; empty if the recipe file has no words in the language.
     pub fn in_language(&self, language: &str) -> &BTreeMap<String, String> {
         static NONE: BTreeMap<String, String> = BTreeMap::new();

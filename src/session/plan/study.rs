@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::SessionSpec;
+use crate::header::RecordedFile;
 use crate::plan::{PhaseSpec, PlanPosition, PlanSpec, PracticeCriterion, StartingGroup, TUTORIAL_ALONE};
 use crate::protocol::ProtocolEvent;
 use crate::questionnaire::Questionnaire;
@@ -14,7 +14,9 @@ use crate::settings::{GazeSource, ParticipantKind, WizardVisibility};
 use crate::study_arm::StudyArm;
 use crate::tutorial::Tutorial;
 use crate::wall_display::AnswerDevice;
+use crate::{LogHeader, SessionSpec};
 use tomcom_core::base::rng::mix;
+use tomcom_core::base::text::count;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_people::wizard::WizardKind;
@@ -164,6 +166,69 @@ impl Study {
             phases,
         });
         Some(spec)
+    }
+
+    /// What somebody who reads the plan may not expect of it: questionnaires that are not asked after every trial, and texts
+    /// in another language than that of the participant's display.
+    pub fn remarks(&self) -> Vec<String> {
+        let trials = self.plan.conditions.len() as u32;
+        let mut remarks = Vec::new();
+        for (when, asked) in self.plan.questionnaire.iter().zip(&self.questionnaires) {
+            let after: Vec<String> =
+                (1..=trials).filter(|period| when.is_asked_after(*period)).map(|period| period.to_string()).collect();
+            if !when.before && after.len() < trials as usize {
+                let all = count(trials, "trial", "trials");
+                remarks.push(format!(
+                    "the questionnaire \"{}\" is asked after trial {} of {all} only",
+                    asked.name,
+                    after.join(" and ")
+                ));
+            }
+        }
+        let language = self.session.display.code();
+        let texts =
+            self.questionnaires.iter().map(|asked| (format!("the questionnaire \"{}\"", asked.name), &asked.language));
+        let tutorial = self.tutorial.iter().map(|tutorial| ("the tutorial".to_string(), &tutorial.language));
+        let others: Vec<String> = texts
+            .chain(tutorial)
+            .filter(|(_, of)| *of != language)
+            .map(|(what, of)| format!("{what} ({of})"))
+            .collect();
+        if !others.is_empty() {
+            remarks.push(format!("the display's language is \"{language}\", but not that of {}", others.join(", ")));
+        }
+        remarks
+    }
+
+    /// What has changed since a recording of the plan that has another digest, in the words of its files: "recipes/sushi.toml",
+    /// "[trial]". `kitchen`: layout and recipes as they are now.
+    pub fn changed_since(&self, recorded: &LogHeader, kitchen: [&RecordedFile; 2]) -> Vec<String> {
+        let files = [(&recorded.layout, kitchen[0]), (&recorded.recipes, kitchen[1])].into_iter();
+        let mut changed: Vec<String> = files
+            .filter(|(before, now)| before.text != now.text)
+            .map(|(_, now)| now.path.trim_start_matches("../").to_string())
+            .collect();
+        let Some(step) = &recorded.session.step else { return changed };
+        let participant = step.participant as usize;
+        let slot = self.slots(participant).iter().position(|slot| slot.period == step.period);
+        if let Some(slot) = slot.filter(|_| participant < self.plan.codes().len()) {
+            let wanted = WantedRecording { participant, slot, attempt: step.attempt, instructed: false };
+            let (spec, _) = self.settings(wanted);
+            let phases = spec.step.as_ref().map_or(&[][..], |now| &now.phases);
+            let [before, now] = [&recorded.session, &spec]
+                .map(|spec| what_can_change_a_trial(&SessionSpec { step: None, ..spec.clone() }));
+            let differs = |path: &&String| before.get(*path) != now.get(*path);
+            let tables: BTreeSet<&str> =
+                before.keys().chain(now.keys()).filter(differs).filter_map(|path| path.split('.').next()).collect();
+            changed.extend(tables.into_iter().map(|table| format!("[{table}]")));
+            if step.phases.iter().any(|phase| !phases.contains(phase)) {
+                changed.push("what participants are told, taught or asked".to_string());
+            }
+        }
+        if changed.is_empty() {
+            changed.push("[plan]".to_string());
+        }
+        changed
     }
 
     fn phases(&self, slot: PlannedTrial, wanted: WantedRecording) -> Vec<PhaseSpec> {
@@ -331,6 +396,8 @@ pub struct PhaseStand {
     /// Number of the last phase that was begun, from 1; 0: none was.
     pub phase: usize,
     pub trial_over: bool,
+    /// Whether the wizard ended the trial, before its presses and its time.
+    pub ended_by_wizard: bool,
     /// Items of the last phase's questionnaire that were answered or skipped.
     pub items: usize,
 }
@@ -412,6 +479,8 @@ pub struct TrialAttempt {
     /// Of both agents in the trial, while it ran.
     pub presses: u32,
     pub trial_over: bool,
+    /// Whether the wizard ended the trial, before its presses and its time.
+    pub ended_by_wizard: bool,
     /// How far the recording is, in words.
     #[serde(skip)]
     pub ended_where: String,
@@ -529,6 +598,7 @@ impl PlannedTrialProgress {
             attempt: made.step.attempt,
             presses: made.presses,
             trial_over: made.stand.trial_over,
+            ended_by_wizard: made.stand.ended_by_wizard,
             ended_where: made.ended_where(study.presses(slot)),
             waived: made.waived.clone(),
             excluded: made.excluded.clone(),

@@ -6,8 +6,9 @@ use serde::Serialize;
 
 use tomcom_core::gaze::tags::{CELLS, DisplayTag, DisplayTags};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::kitchen::parts::SCREEN_LANGUAGE;
 use tomcom_core::kitchen::{
-    Agent, ButtonId, ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State,
+    Agent, ButtonId, ContentId, Dish, DishId, Kitchen, LocationId, LocationKind, OrderContent, State,
 };
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -17,6 +18,8 @@ pub struct KitchenSummary {
     pub states: String,
     pub aspects: Vec<AspectValueCount>,
     pub plans: Vec<ShortestPlanSummary>,
+    /// Dishes that the display names or draws otherwise than the others, in words.
+    pub remarks: Vec<String>,
     /// Tags in the corners of the wall display for eye trackers; null if there is no room for tags.
     pub tags: Option<DisplayTagLayout>,
 }
@@ -85,9 +88,28 @@ impl KitchenSummary {
             states: kitchen.state_count().to_string(),
             aspects: aspects.collect(),
             plans: plans.collect(),
+            remarks: remarks(kitchen),
             tags: DisplayTags::place(kitchen).ok().as_ref().map(DisplayTagLayout::from_tags),
         }
     }
+}
+
+/// Dishes without a word in a language in which others have one, and dishes that look the same.
+fn remarks(kitchen: &Kitchen) -> Vec<String> {
+    let mut remarks = Vec::new();
+    for (language, words) in kitchen.words.languages().filter(|(language, _)| *language != SCREEN_LANGUAGE) {
+        let without: Vec<&str> =
+            kitchen.dishes.iter().map(|dish| dish.name.as_str()).filter(|name| !words.contains_key(*name)).collect();
+        if !without.is_empty() {
+            remarks.push(format!("without words in [words.{language}]: {}", without.join(", ")));
+        }
+    }
+    for (index, dish) in kitchen.dishes.iter().enumerate() {
+        let is_alike = |other: &&Dish| other.look.is_some() && other.look == dish.look;
+        let alike = kitchen.dishes[..index].iter().find(is_alike);
+        remarks.extend(alike.map(|other| format!("the same picture: {}, {}", other.name, dish.name)));
+    }
+    remarks
 }
 
 fn ordered(kitchen: &Kitchen, dish: DishId) -> State {
@@ -155,6 +177,9 @@ pub fn describe(kitchen: &Kitchen, figures: &KitchenSummary) -> String {
             text += &format!("      may be taken for {}\n", items(*variant));
         }
         text += &format!("      {} presses: {}\n", plan.actions, plan.presses.join(", "));
+    }
+    for remark in &figures.remarks {
+        text += &format!("  {remark}\n");
     }
     text += "\nSTATE SPACE\n";
     for aspect in &figures.aspects {

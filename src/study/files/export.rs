@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use csv::{ByteRecord, ReaderBuilder};
 
-use crate::column::{CsvRow, CsvTable, TableCell, described};
+use crate::column::{CsvRow, CsvTable, TableCell, TableColumn, described};
 use crate::report;
 use crate::study_part::AnalysedRecording;
 use tomcom_core::base::text::without_formula;
@@ -51,8 +51,7 @@ impl<Out: Write> TableRows<Out> {
     }
 
     /// Writes a row of the CSV table. Its texts can be what somebody typed, and people open tables with spreadsheets.
-    fn write(&mut self, row: &impl CsvRow) -> io::Result<()> {
-        let mut cells = row.cells();
+    fn write(&mut self, mut cells: Vec<TableCell>) -> io::Result<()> {
         for cell in &mut cells {
             if let TableCell::Text(text) = cell
                 && let Cow::Owned(guarded) = without_formula(text)
@@ -66,7 +65,7 @@ impl<Out: Write> TableRows<Out> {
 
 impl TableRows {
     pub fn add(&mut self, row: &impl CsvRow) {
-        self.write(row).expect("rows are flat, and written to memory");
+        self.write(row.cells()).expect("rows are flat, and written to memory");
     }
 
     pub fn into_bytes(self) -> Vec<u8> {
@@ -87,7 +86,7 @@ impl TableFile {
     pub fn add<Row: CsvRow>(&mut self, row: &Row) -> Result<(), AnalysisWriteError> {
         debug_assert_eq!(Row::TABLE, self.table, "a row of another table");
         self.has_rows = true;
-        at(&self.path, self.rows.write(row))
+        at(&self.path, self.rows.write(row.cells()))
     }
 
     /// Completes the table and gives its file its name. Returns the table if it has rows.
@@ -167,8 +166,12 @@ impl AnalysisFolder {
     }
 
     pub fn begin(&self, table: CsvTable) -> Result<TableFile, AnalysisWriteError> {
+        self.begin_with(table, &names(table))
+    }
+
+    fn begin_with(&self, table: CsvTable, names: &[impl AsRef<str>]) -> Result<TableFile, AnalysisWriteError> {
         let path = self.folder.join(format!("{}.csv", table.name()));
-        let rows = TableRows::new(at(&path, begin_table(&path, table))?);
+        let rows = TableRows::new(at(&path, begin_table(&path, names))?);
         Ok(TableFile { table, path, rows, has_rows: false })
     }
 
@@ -182,13 +185,28 @@ impl AnalysisFolder {
         table.finish()
     }
 
+    /// Writes a table whose columns follow from the study; returns the table if it has rows.
+    pub fn table_of_columns<Row: CsvRow>(
+        &self,
+        columns: &[TableColumn<Row>],
+        rows: impl Iterator<Item = Row>,
+    ) -> Result<Option<CsvTable>, AnalysisWriteError> {
+        let names: Vec<&str> = columns.iter().map(|column| column.name.as_ref()).collect();
+        let mut table = self.begin_with(Row::TABLE, &names)?;
+        for row in rows {
+            table.has_rows = true;
+            at(&table.path, table.rows.write(columns.iter().map(|column| column.cell(&row)).collect()))?;
+        }
+        table.finish()
+    }
+
     /// From the stored rows of these recordings, in this order. Returns the tables that have rows.
     pub fn tables_of_events(&self, recordings: &[usize]) -> Result<Vec<CsvTable>, AnalysisWriteError> {
         let mut filled = Vec::new();
         for table in CsvTable::OF_EVENTS {
             let path = self.folder.join(format!("{}.csv", table.name()));
             let write = || {
-                let mut out = begin_table(&path, table)?;
+                let mut out = begin_table(&path, &names(table))?;
                 let mut bytes = 0;
                 for &index in recordings {
                     bytes += io::copy(&mut File::open(self.part(index, table.name()))?, &mut out)?;
@@ -207,9 +225,13 @@ impl AnalysisFolder {
     }
 }
 
-fn begin_table(path: &Path, table: CsvTable) -> io::Result<Replacement> {
+fn names(table: CsvTable) -> Vec<Cow<'static, str>> {
+    described(table).into_iter().map(|column| column.column).collect()
+}
+
+fn begin_table(path: &Path, names: &[impl AsRef<str>]) -> io::Result<Replacement> {
     let mut out = Replacement::begin(path)?;
-    let names: Vec<Cow<str>> = described(table).into_iter().map(|column| column.column).collect();
+    let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
     writeln!(out, "{}", names.join(","))?;
     Ok(out)
 }

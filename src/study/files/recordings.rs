@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
+use tomcom_session::event::TrialEndReason;
 use tomcom_session::files::file_error::{FileError, FileResult, open_regular};
 use tomcom_session::header::{FORMAT, PreviousPart};
 use tomcom_session::log::{
@@ -167,6 +168,7 @@ struct PartProgress {
     runs: bool,
     presses: u32,
     trial_over: bool,
+    ended_by_wizard: bool,
     criterion_failed: bool,
     criterion_waived: Option<String>,
     aborted: Option<String>,
@@ -181,7 +183,10 @@ impl PartProgress {
             Event::Press { .. } => self.presses += u32::from(self.runs),
             Event::TrialStarted | Event::TrialResumed | Event::Probe(ProbeEvent::Ended { .. }) => self.runs = true,
             Event::TrialPaused | Event::Probe(ProbeEvent::Begun { .. }) => self.runs = false,
-            Event::TrialEnded { .. } => (self.runs, self.trial_over) = (false, true),
+            Event::TrialEnded { reason } => {
+                (self.runs, self.trial_over) = (false, true);
+                self.ended_by_wizard = *reason == TrialEndReason::Wizard;
+            }
             Event::TrialAborted { reason } => (self.runs, self.aborted) = (false, Some(reason.clone())),
             Event::TrialExcluded { reason } => self.excluded = Some(Some(reason.clone())),
             Event::TrialIncluded => self.excluded = Some(None),
@@ -289,7 +294,12 @@ impl Part {
         };
         let phase = all.iter().map(|part| part.told.phase).find(|phase| *phase > 0).unwrap_or(0);
         let items: BTreeSet<&String> = since(&all, phase).iter().flat_map(|part| &part.told.items).collect();
-        let stand = PhaseStand { phase, trial_over: any(|part| part.trial_over), items: items.len() };
+        let stand = PhaseStand {
+            phase,
+            trial_over: any(|part| part.trial_over),
+            ended_by_wizard: any(|part| part.ended_by_wizard),
+            items: items.len(),
+        };
         PlanRecording {
             recording: name.to_string(),
             code: self.code.clone(),

@@ -22,11 +22,11 @@ use crate::figures::{CorrectedRecording, StudySummary};
 use crate::files::export::{AnalysisFolder, AnalysisWriteError};
 use crate::files::pool_file::read_frozen;
 use crate::frozen_plan::{FrozenPlan, PreregistrationCheck, RecordedPlan};
-use crate::gathered::GatheredRecordings;
+use crate::gathered::{GatheredPlace, GatheredRecordings};
 use crate::kept_cost::KeptCost;
 use crate::pass::reading::{AnalysisScope, RecordedConsent, WaivedPractice};
 pub use crate::pass::tell::{describe, describe_arms};
-use crate::planned_trial::{RecordingCopy, missing_trials};
+use crate::planned_trial::{ForeignReason, ForeignRecording, RecordingCopy, missing_trials};
 use crate::study_part::AnalysedRecording;
 use crate::tables::communications::concepts;
 use crate::tables::participants::{
@@ -37,6 +37,7 @@ use crate::trial_statistics::{DetailTotals, TrialStatistics, arrange};
 use crate::{parallel, report};
 use tomcom_core::base::text::count;
 use tomcom_core::kitchen::Kitchen;
+use tomcom_session::event::TrialEndReason;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::log::{LogReader, header_digest, rater_codes};
 use tomcom_session::replay::SameKitchenCheck;
@@ -67,21 +68,40 @@ pub struct AnalysisRequest {
 pub struct NamedRecordings {
     found: Vec<(PathBuf, String)>,
     copies: Vec<RecordingCopy>,
+    foreign: Vec<ForeignRecording>,
 }
 
 impl NamedRecordings {
     /// Each once, ordered by name, so that the order does not depend on how they are spread over folders. `plans`: names of
     /// the plans whose recordings are meant; empty: all. Errors: several plans have recordings and none is named, or one
-    /// that has none; or two plans have a participant of the same code, of whom tables would make one person.
+    /// that has none; or two plans have a participant of the same code, of whom tables would make one person. Recordings of no
+    /// plan beside those of a plan, and simulated ones beside those of people, are left out.
     pub fn find(paths: &[PathBuf], plans: &[String]) -> Result<NamedRecordings, StudyError> {
         let first = paths.first().cloned().unwrap_or_default();
         let GatheredRecordings { paths, places, copies } = GatheredRecordings::find(paths)?;
         check_plans(&places, plans).map_err(|(found, remedy)| FileError::from_finding(&first, found, remedy))?;
-        let is_meant = |place: &(String, Option<String>)| {
-            plans.is_empty() || place.1.as_ref().is_some_and(|plan| plans.contains(plan))
+        let has_plan = places.iter().any(|place| place.plan.is_some());
+        let is_of_plan = |place: &GatheredPlace| match &place.plan {
+            Some(plan) => plans.is_empty() || plans.contains(plan),
+            None => !has_plan,
         };
-        let meant = paths.into_iter().zip(&places).filter(|(_, place)| is_meant(place));
-        let mut found: Vec<(PathBuf, String)> = meant.map(|(path, _)| (path.clone(), name(&path))).collect();
+        let has_people = places.iter().any(|place| is_of_plan(place) && !place.is_simulated);
+        let (mut found, mut foreign) = (Vec::new(), Vec::new());
+        for (path, place) in paths.into_iter().zip(&places) {
+            let name = name(&path);
+            let reason = match (is_of_plan(place), &place.plan) {
+                (true, _) if has_people && place.is_simulated => ForeignReason::Simulated,
+                (true, _) => {
+                    found.push((path, name));
+                    continue;
+                }
+                (false, None) => ForeignReason::NoPlan,
+                // The user names the plans that are meant.
+                (false, Some(_)) => continue,
+            };
+            foreign.push(ForeignRecording { reason, recording: name });
+        }
+        foreign.sort();
         // Recordings from several folders with the same name are identified by their full paths.
         let names: Vec<String> = found.iter().map(|(_, name)| name.clone()).collect();
         for (path, name) in &mut found {
@@ -90,7 +110,7 @@ impl NamedRecordings {
             }
         }
         found.sort_by(|(one, a), (other, b)| (a, one).cmp(&(b, other)));
-        Ok(NamedRecordings { found, copies })
+        Ok(NamedRecordings { found, copies, foreign })
     }
 
     /// The two raters whose codes an analysis of these recordings uses: those whom the user names, or the only two who
@@ -114,10 +134,10 @@ impl NamedRecordings {
     }
 }
 
-/// What is wrong about the plans of recordings, and what would be right. `places`: code and plan of each recording.
-fn check_plans(places: &[(String, Option<String>)], wanted: &[String]) -> Result<(), (String, String)> {
+/// What is wrong about the plans of recordings, and what would be right.
+fn check_plans(places: &[GatheredPlace], wanted: &[String]) -> Result<(), (String, String)> {
     let mut numbers: BTreeMap<&str, u64> = BTreeMap::new();
-    for plan in places.iter().filter_map(|(_, plan)| plan.as_deref()) {
+    for plan in places.iter().filter_map(|place| place.plan.as_deref()) {
         *numbers.entry(plan).or_default() += 1;
     }
     let one = |(plan, number): (&&str, &u64)| format!("\"{plan}\" ({})", count(*number, "recording", "recordings"));
@@ -136,7 +156,7 @@ fn check_plans(places: &[(String, Option<String>)], wanted: &[String]) -> Result
         return Err((format!("recordings of several plans: {}", there()), remedy));
     }
     let mut codes: BTreeMap<&str, &str> = BTreeMap::new();
-    let meant = places.iter().filter_map(|(code, plan)| Some((code.as_str(), plan.as_deref()?)));
+    let meant = places.iter().filter_map(|place| Some((place.code.as_str(), place.plan.as_deref()?)));
     for (code, plan) in meant.filter(|(_, plan)| wanted.iter().any(|wanted| wanted == plan)) {
         let other = *codes.entry(code).or_insert(plan);
         if other != plan {
@@ -173,7 +193,8 @@ pub fn study(
         Ok(keep(&export, analysis.extent, index, &analysed, &rows)?)
     };
     parallel::each_with(&numbered, KeptCost::default, work, done).into_iter().collect::<Result<(), StudyError>>()?;
-    conclude(numbered.len(), &export, analysis.extent, frozen, recordings.copies.clone())
+    let left = (recordings.copies.clone(), recordings.foreign.clone());
+    conclude(numbered.len(), &export, analysis.extent, frozen, left)
 }
 
 /// The frozen plan with which the recordings are compared, with its digest; `None` if the user names no frozen plan.
@@ -256,13 +277,13 @@ impl CollectedRecordings {
     }
 }
 
-/// `number`: the recordings are kept under the numbers below it; `copies` were left out of them.
+/// `number`: the recordings are kept under the numbers below it; `copies` and `foreign` ones were left out of them.
 fn conclude(
     number: usize,
     export: &AnalysisFolder,
     extent: AnalysisScope,
     frozen: Option<(String, FrozenPlan)>,
-    copies: Vec<RecordingCopy>,
+    (copies, foreign): (Vec<RecordingCopy>, Vec<ForeignRecording>),
 ) -> Result<(StudySummary, PathBuf), StudyError> {
     let CollectedRecordings {
         mut trials,
@@ -283,10 +304,13 @@ fn conclude(
     // The sort is stable, so the order of a tutorial's questions stays.
     tutorials.sort_by(|a, b| (&a.participant, &a.recording).cmp(&(&b.participant, &b.recording)));
     let (details, mut filled) = tables_of_details(&trials, &kept, export)?;
+    let is_ended = |trial: &&TrialStatistics| trial.counts() && trial.ended == Some(TrialEndReason::Wizard);
+    let ended = trials.iter().filter(is_ended).count() as u64;
     let figures = StudySummary {
-        preregistration: frozen.map(|(digest, frozen)| PreregistrationCheck::new(digest, &frozen, &plans)),
+        preregistration: frozen.map(|(digest, frozen)| PreregistrationCheck::new(digest, &frozen, &plans, ended)),
         missing_trials: missing_trials(&plans),
         copies,
+        foreign,
         corrections,
         waived,
         tutorial: TutorialSummary::from_answers(&tutorials),
@@ -295,11 +319,12 @@ fn conclude(
     let events: Vec<usize> = if extent.events { kept.into_values().collect() } else { Vec::new() };
     filled.extend(export.tables_of_events(&events)?);
     export.remove_kept()?;
-    filled.extend(export.table::<ParticipantRow>(participants(&trials, &consents))?);
+    let columns = ParticipantRow::columns_of(&trials);
+    filled.extend(export.table_of_columns(&columns, participants(&trials, &consents))?);
     filled.extend(export.table::<TrialStatistics>(&trials)?);
     filled.extend(export.table::<AnswerRow>(trials.iter().flat_map(answers))?);
     filled.extend(export.table::<TutorialQuestionRow>(&tutorials)?);
-    filled.extend(export.table::<DataDictionaryRow>(dictionary())?);
+    filled.extend(export.table::<DataDictionaryRow>(dictionary(&trials))?);
     filled.sort_unstable();
     let path = export.report(&report::page(&figures, &trials, &facts, &filled))?;
     Ok((figures, path))

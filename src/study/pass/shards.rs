@@ -17,13 +17,14 @@ use crate::kept_cost::KeptCost;
 use crate::parallel::{self, WorkerPool};
 use crate::pass::reading::AnalysisScope;
 use crate::pass::{AnalysisRequest, NamedRecordings, StudyError, analyse, conclude, frozen, keep, no_recording};
-use crate::planned_trial::{PlannedTrialKey, RecordingCopy, differing_copy};
+use crate::planned_trial::{ForeignRecording, PlannedTrialKey, RecordingCopy, differing_copy, mixed_kinds};
 use crate::study_part::{AnalysedRecording, PART_FORMAT, PartAnalysisOptions, PartHeader, check_parts, trial_index};
 use tomcom_session::files::compile_kitchen;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::headless::SimulationShard;
 use tomcom_session::log::{LogReader, rater_codes};
 use tomcom_session::replay::SameKitchenCheck;
+use tomcom_session::settings::ParticipantKind;
 
 /// Number of recordings that are analysed before their results are written, which bounds memory.
 const BLOCK: usize = 32;
@@ -77,6 +78,7 @@ pub fn analyse_shard(
         recordings: own.len() as u64,
         left_out,
         copies: recordings.copies.into_iter().collect(),
+        foreign: recordings.foreign.into_iter().collect(),
         analysis: PartAnalysisOptions { concepts, events, raters: analysis.raters.clone() },
         plans,
     };
@@ -127,13 +129,14 @@ pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), Study
     let mut joined = JoinedRecordings::default();
     for part in &mut parts {
         joined.copies.extend(part.header.copies.iter().cloned());
+        joined.foreign.extend(part.header.foreign.iter().cloned());
         while let Some((recording, rows)) = part.next_recording()? {
             if let Some(index) = joined.admit(part.path(), &recording, &export)? {
                 keep(&export, extent, index, &recording, &rows)?;
             }
         }
     }
-    let JoinedRecordings { number, names, copies, raters, .. } = joined;
+    let JoinedRecordings { number, names, copies, foreign, raters, .. } = joined;
     let lost =
         parts.iter().find_map(|part| Some((part, part.header.left_out.iter().find(|name| !names.contains(*name))?)));
     if let Some((part, name)) = lost {
@@ -149,7 +152,8 @@ pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), Study
     if let Some(named) = &headers[0].analysis.raters {
         rater_codes::check_named(Path::new("--raters"), named, &raters)?;
     }
-    conclude(number, &export, extent, frozen, copies.into_iter().collect())
+    let left = (copies.into_iter().collect(), foreign.into_iter().collect());
+    conclude(number, &export, extent, frozen, left)
 }
 
 /// The recordings of a study's parts. Parts of different folders can have copies, or the same trial.
@@ -162,6 +166,9 @@ struct JoinedRecordings {
     /// By trial: the place of the recording that counts for it.
     trials: BTreeMap<PlannedTrialKey, String>,
     copies: BTreeSet<RecordingCopy>,
+    foreign: BTreeSet<ForeignRecording>,
+    /// Whether the trials are of simulated participants, and the place of the first.
+    kind: Option<(bool, String)>,
     raters: BTreeSet<String>,
 }
 
@@ -179,6 +186,14 @@ impl JoinedRecordings {
         if let Some(pair) = recording.trial.as_ref().and_then(|(trial, ..)| trial.raters.as_ref()) {
             let coded = pair.raters.iter().zip(&pair.codes).filter(|(_, codes)| !codes.0.is_empty());
             self.raters.extend(coded.map(|(rater, _)| rater.clone()));
+        }
+        if let Some((trial, ..)) = &recording.trial {
+            let is_simulated = trial.kind == ParticipantKind::Simulated;
+            match &self.kind {
+                Some((kind, first)) if *kind != is_simulated => return wrong(mixed_kinds(is_simulated, first)),
+                Some(_) => {}
+                None => self.kind = Some((is_simulated, place.clone())),
+            }
         }
         let mut index = self.number;
         if let Some((first, first_place)) = self.logs.get(&recording.digest) {
@@ -202,10 +217,6 @@ impl JoinedRecordings {
         if let Some(trial) = recording.counted_trial() {
             if let Some(first) = self.trials.get(&trial) {
                 return wrong(trial.counted_twice(first));
-            }
-            if let Some((_, first)) = self.trials.range(trial.of_code()).find(|(other, _)| other.is_mixed_with(&trial))
-            {
-                return wrong(trial.mixed_with(first));
             }
             self.trials.insert(trial, place.clone());
         }

@@ -4,10 +4,10 @@ use crate::analysis::probe_figures;
 use crate::arm_comparison::StudyArmComparison;
 use crate::effect::{AssistanceEffect, LeftOutParticipant, left_out_in_words};
 use crate::figures::{StudySummary, pairs_in_words};
-use crate::headline::{RATES_AND_RATIO, fewer, mixed_sources, p_value, primary_outcome};
+use crate::headline::{RATES_AND_RATIO, fewer, level, mixed_sources, p_value, primary_outcome};
 use crate::live_arms::SignalSenderResults;
 use crate::pass::reading::WaivedPractice;
-use crate::planned_trial::{copies_in_words, in_words};
+use crate::planned_trial::{copies_in_words, foreign_in_words, in_words};
 use crate::roc::{BootstrapInterval, EQUAL_SIGNALS};
 use tomcom_core::base::text::{count, decimal, percent};
 use tomcom_core::measures::matching::{MatchShares, Similarity};
@@ -40,6 +40,7 @@ pub fn describe(figures: &StudySummary) -> String {
             count(totals.unproven, "press of the human is", "presses of the human are")
         );
     }
+    text += &foreign_in_words(&figures.foreign).map_or(String::new(), |foreign| format!("{foreign}\n"));
     text += &figures.preregistration.as_ref().map_or(String::new(), |found| format!("{}\n", found.words()));
     text += &in_words(&figures.missing_trials).map_or(String::new(), |missing| format!("{missing}\n"));
     for one in &figures.corrections {
@@ -255,7 +256,7 @@ fn left_out_of(left_out: &[LeftOutParticipant]) -> String {
 
 pub fn describe_arms(found: &StudyArmComparison) -> String {
     let mut text = format!(
-        "{} per press of the human, by condition (linear mixed model of {} of {}{}; ratio with 95 % interval, below 1: fewer with the first):\n",
+        "{} per press of the human, by condition (linear mixed model of {} of {}{}; ratio with interval, below 1: fewer with the first):\n",
         found.outcome.title(),
         count(found.trials as u64, "trial", "trials"),
         count(found.participants as u64, "participant", "participants"),
@@ -264,10 +265,11 @@ pub fn describe_arms(found: &StudyArmComparison) -> String {
     for one in &found.contrasts {
         let [low, high] = one.interval;
         text += &format!(
-            "  {} to {}: ratio {:.2} ({low:.2} to {high:.2}), t({:.1}) = {:.2}, {}, corrected by Holm: {}\n",
+            "  {} to {}: ratio {:.2} ({} {low:.2} to {high:.2}), t({:.1}) = {:.2}, {}, corrected by Holm: {}\n",
             one.arm.title(),
             one.against.title(),
             one.ratio,
+            level(one.level),
             one.contrast.df,
             one.contrast.t,
             p_value(one.contrast.p),

@@ -3,16 +3,14 @@
 use maud::{Markup, Render, html};
 
 use crate::arm_comparison::{
-    ArmAnalysis, ArmDeviation, GroupOrder, NonInferiority, StudyArmComparison, StudyArmContrast, StudyArmCounts,
-    StudyConditionSummary,
+    ArmAnalysis, ArmDeviation, GroupOrder, NonInferiority, StudyArmComparison, StudyArmContrast, StudyConditionSummary,
 };
 use crate::charts;
 use crate::effect::{AssistanceEffect, LeftOutParticipant, left_out_in_words};
 use crate::figures::StudySummary;
-use crate::headline::{fewer, mixed_sources};
+use crate::headline::{RATES_AND_RATIO, fewer, level, mixed_sources};
 use crate::report::elements::{
-    Captions, PageColumn, UNKNOWN, cells, keys, nothing, number, p_sentence, p_value, percent, range, scroll, section,
-    with_interval,
+    Captions, PageColumn, UNKNOWN, cells, keys, nothing, number, p_sentence, p_value, percent, range, with_interval,
 };
 use crate::statistics::FTest;
 use crate::trial_statistics::TrialStatistics;
@@ -21,15 +19,15 @@ pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials
     let headline = figures.effects.first();
     if figures.conditions.len() > 2 {
         // Charts and tests compare two conditions; a study with more conditions has another section for that.
-        let content = html! { (scroll(conditions(captions, &figures.conditions))) (sources_differ(figures)) };
-        return section("Errors and times", content);
+        let content = html! { (conditions(captions, &figures.conditions)) (sources_differ(figures)) };
+        return captions.section("Errors and times", content);
     }
     let pictures = pictures(captions, figures, trials);
     if pictures.0.is_empty() {
         return nothing();
     }
     let content = html! {
-        (scroll(conditions(captions, &figures.conditions)))
+        (conditions(captions, &figures.conditions))
         (sources_differ(figures))
         div class="figures" { (pictures) } "\n"
         (headline.map_or_else(nothing, in_words))
@@ -45,7 +43,7 @@ pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials
             "\n"
         }
     };
-    section(if figures.conditions.len() > 1 { "Does assistance help?" } else { "Errors and times" }, content)
+    captions.section(if figures.conditions.len() > 1 { "Does assistance help?" } else { "Errors and times" }, content)
 }
 
 /// Warning below a table of conditions whose columns about causes cannot be compared; empty if they can.
@@ -58,12 +56,10 @@ fn pictures(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStat
     let key = keys(&[("first", "assisted first"), ("second", "unassisted first")]);
     let of_conditions = keys(&[("unassisted", "unassisted"), ("assisted", "assisted")]);
     html! {
-        (captions.figure(charts::errors_by_condition(trials), html! {
-            "Errors by condition. A line joins the two trials of a participant; black is the mean of the participants\u{2019} rates. \
-             The table states the share of all presses pooled." (key)
+        (captions.figure(charts::improvements(trials), html! {
+            "Reduction of errors per 100 presses from the first to the second trial. Practice changes both groups alike; a difference \
+             between the groups is the effect of assistance." (key)
         }))
-        (captions.figure(charts::improvements(trials), "Reduction of errors per 100 presses from the first to the second \
-            trial. Practice changes both groups alike; a difference between the groups is the effect of assistance."))
         (captions.figure(charts::press_durations(trials), html! {
             "Median seconds between presses, which indicate experience." (of_conditions)
         }))
@@ -170,7 +166,7 @@ fn tests(captions: &mut Captions, effects: &[AssistanceEffect]) -> Markup {
         }
     }
     html! {
-        (scroll(captions.table_of_columns(caption, &columns, effects.iter())))
+        (captions.table_of_columns(caption, &columns, effects.iter()))
         @for (who, titles) in sentences { (left_out(&titles.join(", "), who)) }
     }
 }
@@ -214,7 +210,7 @@ pub(super) fn arms(captions: &mut Captions, figures: &StudySummary) -> Markup {
         @if let Some(found) = &figures.arms { (comparison(captions, found)) }
         @if let Some(found) = &figures.as_carried_out { (carried_out(captions, &figures.deviations, found)) }
     };
-    section("How do the conditions compare?", content)
+    captions.section("How do the conditions compare?", content)
 }
 
 fn carried_out(captions: &mut Captions, deviations: &[ArmDeviation], found: &ArmAnalysis) -> Markup {
@@ -226,11 +222,10 @@ fn carried_out(captions: &mut Captions, deviations: &[ArmDeviation], found: &Arm
             ". The same analysis by the conditions as carried out follows."
         }
         "\n"
-        (scroll(conditions(captions, &found.conditions)))
+        (conditions(captions, &found.conditions))
         @if found.effects.iter().any(AssistanceEffect::has_pairs) { (tests(captions, &found.effects)) }
         @if let Some(arms) = &found.arms {
-            (scroll(rates(captions, arms)))
-            (scroll(contrasts(captions, arms)))
+            (contrasts(captions, arms))
             (left_out("the contrasts", &arms.left_out))
         }
     }
@@ -241,7 +236,7 @@ fn comparison(captions: &mut Captions, found: &StudyArmComparison) -> Markup {
     let [between, within] = found.standard_deviations;
     html! {
         p {
-            "Primary outcome: " (outcome) " per press of the human, in " (found.trials) " trials of " (found.participants)
+            "Compared: " (outcome) " per press of the human, in " (found.trials) " trials of " (found.participants)
             " participants. Linear mixed model of log((count\u{a0}+\u{a0}0.5)\u{a0}/\u{a0}presses): participant random, condition and trial \
             number fixed; REML, Satterthwaite\u{2019}s degrees of freedom. Standard deviations of the logarithms: "
             (number(Some(between), 2)) " between participants, " (number(Some(within), 2)) " within."
@@ -254,31 +249,13 @@ fn comparison(captions: &mut Captions, found: &StudyArmComparison) -> Markup {
             }
             "\n"
         }
-        (scroll(rates(captions, found)))
-        div class="figures" {
-            (captions.figure(charts::ratios(&found.contrasts), "Ratio of the rates of two conditions, with its interval of 95 %. Below \
-                1 the first one has fewer."))
-        }
-        "\n"
-        (scroll(contrasts(captions, found)))
+        (contrasts(captions, found))
         (left_out("the contrasts", &found.left_out))
         @for one in &found.non_inferiority { (arms_in_words(one, outcome)) }
         @if found.arms.len() > 2 && found.with_carry_over.is_empty() {
             p class="note" { "The effect of the condition before (carry-over) cannot be estimated from these trials." } "\n"
         }
     }
-}
-
-fn rates(captions: &mut Captions, found: &StudyArmComparison) -> Markup {
-    let columns: [PageColumn<StudyArmCounts>; 5] = [
-        ("condition", |one| one.arm.title().render()),
-        ("trials", |one| one.trials.render()),
-        ("events", |one| one.events.render()),
-        ("presses of the human", |one| one.presses.render()),
-        ("per 100 presses", |one| number(Some(one.per_100()), 2).render()),
-    ];
-    let caption = format!("Events ({}) by condition, all trials of a condition pooled.", found.outcome.title());
-    captions.table_of_columns(&caption, &columns, found.arms.iter())
 }
 
 /// A contrast of study arms in the primary model, with the same contrast in the two other models.
@@ -301,10 +278,11 @@ fn contrasts(captions: &mut Captions, found: &StudyArmComparison) -> Markup {
                 .map(|other| (other.ratio, other.p_holm)),
         })
         .collect();
-    let columns: [PageColumn<ContrastRow>; 8] = [
+    let columns: [PageColumn<ContrastRow>; 9] = [
         ("condition", |row| row.own.arm.title().render()),
         ("against", |row| row.own.against.title().render()),
         ("ratio of rates", |row| with_interval(Some(row.own.ratio), Some(row.own.interval), 2)),
+        ("level of the interval", |row| level(row.own.level).render()),
         ("t (degrees of freedom)", |row| {
             format!("{} ({})", number(Some(row.own.contrast.t), 2), number(Some(row.own.contrast.df), 1)).render()
         }),
@@ -329,6 +307,7 @@ fn contrasts(captions: &mut Captions, found: &StudyArmComparison) -> Markup {
     ];
     let caption = "Contrasts of the primary model, and beside them those of a mixed negative binomial model (log presses as offset) and of \
                    the primary model with the effect of the condition before. Holm: corrected over all contrasts of a model.";
+    let caption = format!("{caption} {RATES_AND_RATIO}");
     captions.table_of_columns(caption, &columns, rows.iter())
 }
 

@@ -2,7 +2,7 @@
 
 use maud::{Markup, Render, html};
 
-use super::elements::{Captions, PageColumn, UNKNOWN, keys, nothing, number, scroll, section, with_interval};
+use super::elements::{Captions, PageColumn, UNKNOWN, keys, nothing, number, with_interval};
 use crate::charts::{self, MOST_SIGNALS};
 use crate::figures::StudySummary;
 use crate::live_arms::SignalSenderResults;
@@ -27,14 +27,14 @@ pub(super) fn concepts(captions: &mut Captions, figures: &StudySummary) -> Marku
         @if !pictures.0.is_empty() {
             div class="figures" { (pictures) } "\n"
             h3 { "At equal signals per 100 presses of the human" } "\n"
-            (scroll(at_equal_signals(captions, figures)))
+            (at_equal_signals(captions, figures))
         }
         @if !figures.live.is_empty() {
             h3 { "Acting by themselves" } "\n"
-            (scroll(live(captions, figures)))
+            (live(captions, figures))
         }
     };
-    section("Which concept prevents more?", content)
+    captions.section("Which concept prevents more?", content)
 }
 
 fn bands(figures: &StudySummary) -> String {

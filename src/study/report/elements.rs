@@ -11,6 +11,8 @@ pub(super) const UNKNOWN: &str = "\u{2013}";
 pub(super) struct Captions {
     figures: u32,
     tables: u32,
+    /// Headings of the sections, in their order.
+    sections: Vec<String>,
 }
 
 impl Captions {
@@ -58,17 +60,58 @@ impl Captions {
         rows: &[Vec<Markup>],
     ) -> Markup {
         self.tables += 1;
+        let words: Vec<Option<&str>> =
+            (0..heads.len()).map(|column| are_words(rows, column).then_some("word")).collect();
         html! {
-            table class=[class] {
-                caption { b { "Table\u{a0}" (self.tables) "." } " " (caption) }
-                thead { tr { @for head in heads { th { (head) } } } }
-                tbody {
-                    @for row in rows { "\n" tr { @for cell in row { td { (cell) } } } }
+            figure class="table" {
+                figcaption { b { "Table\u{a0}" (self.tables) "." } " " (caption) } "\n"
+                div class="scroll" {
+                    table class=[class] {
+                        thead { tr { @for (head, class) in heads.iter().zip(&words) { th class=[class] { (head) } } } }
+                        tbody {
+                            @for row in rows {
+                                "\n" tr { @for (cell, class) in row.iter().zip(&words) { td class=[class] { (cell) } } }
+                            }
+                        }
+                    }
                 }
             }
             "\n"
         }
     }
+
+    /// A section of the report with a heading; empty if the section has no content.
+    pub(super) fn section(&mut self, heading: &str, content: Markup) -> Markup {
+        if content.0.is_empty() {
+            return nothing();
+        }
+        self.sections.push(heading.to_string());
+        html! { section id=(place(heading)) { h2 { (heading) } "\n" (content) } "\n" }
+    }
+
+    /// Links to all sections so far.
+    pub(super) fn contents(&self) -> Markup {
+        html! {
+            nav { @for heading in &self.sections { a href={ "#" (place(heading)) } { (heading) } " " } }
+            "\n"
+        }
+    }
+}
+
+/// Name of a section within the page.
+fn place(heading: &str) -> String {
+    heading
+        .to_lowercase()
+        .chars()
+        .filter(|sign| sign.is_alphanumeric() || *sign == ' ')
+        .collect::<String>()
+        .replace(' ', "-")
+}
+
+/// Whether a column has words, which stand to the left, and no numbers.
+fn are_words(rows: &[Vec<Markup>], column: usize) -> bool {
+    let begins = |row: &Vec<Markup>| row.get(column).and_then(|cell| cell.0.chars().next());
+    rows.iter().filter_map(begins).all(char::is_alphabetic) && rows.iter().any(|row| begins(row).is_some())
 }
 
 pub(super) type PageColumn<Row> = (&'static str, fn(&Row) -> Markup);
@@ -79,18 +122,6 @@ pub(super) fn nothing() -> Markup {
 
 pub(super) fn cells<const N: usize>(cells: [&dyn Render; N]) -> Vec<Markup> {
     cells.into_iter().map(Render::render).collect()
-}
-
-/// A section of the report with a heading; empty if the section has no content.
-pub(super) fn section(heading: &str, content: Markup) -> Markup {
-    if content.0.is_empty() {
-        return nothing();
-    }
-    html! { section { h2 { (heading) } "\n" (content) } "\n" }
-}
-
-pub(super) fn scroll(content: Markup) -> Markup {
-    html! { div class="scroll" { (content) } "\n" }
 }
 
 /// Legend of a chart: pairs of CSS class and label.

@@ -5,25 +5,25 @@ use maud::{Markup, html};
 use crate::facts::RecordingFacts;
 use crate::figures::StudySummary;
 use crate::headline::sources;
-use crate::report::elements::{arm, section};
+use crate::report::elements::{Captions, arm};
 use crate::robot_tally::RobotArmTotals;
 use tomcom_core::base::text;
 use tomcom_core::measures::raters::BeliefSource;
 use tomcom_session::event::TrialEndReason;
 
-pub(super) fn methods(figures: &StudySummary, facts: &RecordingFacts) -> Markup {
+pub(super) fn methods(captions: &mut Captions, figures: &StudySummary, facts: &RecordingFacts) -> Markup {
     let content = html! {
         p { (conduct(figures, facts)) (wizard(facts)) (versions(figures, facts)) } "\n"
         p { (analysis(figures)) } "\n"
         @if let Some(traits) = facts.all("traits") {
-            p class="note" {
-                b { "Traits of simulated participants" } " (medians; spread: standard deviation of the logarithm, of the logit for a \
-                probability): " (traits) "."
+            details class="note" {
+                summary { "Traits of simulated participants" }
+                "Medians; spread: standard deviation of the logarithm, of the logit for a probability: " (traits) "."
             }
             "\n"
         }
     };
-    section("Methods", content)
+    captions.section("Methods", content)
 }
 
 fn all(facts: &RecordingFacts, key: &str) -> String {

@@ -10,14 +10,17 @@ use std::collections::BTreeSet;
 
 use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
 
+use crate::charts;
 use crate::column::CsvTable;
 use crate::definitions::DEFINITIONS;
 use crate::facts::RecordingFacts;
 use crate::figures::{StudySummary, pairs_in_words};
-use crate::headline::{RATES_AND_RATIO, mixed_sources, primary_outcome};
+use crate::headline::{mixed_sources, per_100, primary_outcome};
 use crate::pass::reading::WaivedPractice;
-use crate::planned_trial::{copies_in_words, in_words};
-use crate::report::elements::{Captions, PageColumn, UNKNOWN, cells, count, number, p_sentence, percent, section};
+use crate::planned_trial::{copies_in_words, foreign_in_words, in_words};
+use crate::report::elements::{
+    Captions, PageColumn, UNKNOWN, cells, count, keys, nothing, number, p_sentence, percent,
+};
 use crate::trial_statistics::{DisplayLosses, TrialStatistics};
 use tomcom_core::base::text;
 use tomcom_core::measures::raters::{BeliefSource, RaterAgreement};
@@ -27,27 +30,31 @@ pub const STYLE: &str = include_str!("style.css");
 
 pub fn page(figures: &StudySummary, trials: &[TrialStatistics], facts: &RecordingFacts, tables: &[CsvTable]) -> String {
     let captions = &mut Captions::default();
+    let summary = summary(captions, figures, trials);
     let sections = [
-        summary(figures),
-        results::beside_the_paper(captions, figures),
+        assistance::arms(captions, figures),
         assistance::assistance(captions, figures, trials),
         results::awareness(captions, figures),
-        assistance::arms(captions, figures),
         concept_comparison::concepts(captions, figures),
         results::similarity(captions, figures),
         results::robot(captions, figures),
         results::people(captions, figures),
+        results::beside_the_paper(captions, figures),
         trials_section(captions, figures, trials),
-        methods::methods(figures, facts),
-        definitions(),
-        files(tables),
+        methods::methods(captions, figures, facts),
+        definitions(captions),
+        files(captions, tables),
     ];
     let page = html! {
         (DOCTYPE) "\n"
         html lang="en" {
             (head(figures, trials))
             body {
-                main { h1 { (figures.title) } "\n" @for section in sections { (section) } }
+                main {
+                    h1 { (figures.title) } "\n"
+                    (summary) (captions.contents())
+                    @for section in sections { (section) }
+                }
             }
         }
         "\n"
@@ -100,26 +107,30 @@ fn meta_tag(name: &str, begins: &str) -> String {
 /// Least number of participants with both trials from which on r and p are shown among the main results.
 const FEWEST_PARTICIPANTS: usize = 8;
 
-fn summary(figures: &StudySummary) -> Markup {
-    let totals = &figures.totals;
+fn summary(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStatistics]) -> Markup {
+    let (totals, outcome) = (&figures.totals, figures.primary_outcome);
     let pairs: usize = figures.effects.first().map_or(0, |effect| effect.groups.iter().sum());
-    let effect = match (figures.pearson, &figures.similarity) {
-        (Some(_), _) if pairs < FEWEST_PARTICIPANTS => card(
+    let effect = match figures.pearson {
+        Some(_) if pairs < FEWEST_PARTICIPANTS => card(
             UNKNOWN,
             &format!(
                 "no r and no p here: {pairs} participants with both trials are fewer than {FEWEST_PARTICIPANTS}, and r would be chance"
             ),
         ),
-        (Some(pearson), _) => card(
+        Some(pearson) => card(
             &format!("r\u{a0}=\u{a0}{}", number(Some(pearson.r), 2)),
             &format!("of assistance and fewer errors ({})", p_sentence(Some(pearson.p))),
         ),
-        (None, Some(found)) => card(&percent(found.signal.recall), "of the wizard's signals have a match"),
-        (None, None) => card(&text::count(totals.signals, "signal", "signals"), "shown to participants"),
+        None => nothing(),
     };
+    let rates = figures.conditions.iter().map(|one| {
+        let trials = text::count(one.trials, "trial", "trials");
+        let what = format!("{} per 100 presses of the human in {trials}: {}", outcome.title(), one.condition.title());
+        card(&number(per_100(one, outcome), 1), &what)
+    });
     html! {
-        @for sentence in primary_outcome(figures) { p class="lead" { (sentence.replace(" < ", "\u{a0}<\u{a0}")) } "\n" }
-        @if figures.arms.is_some() { p class="note" { (RATES_AND_RATIO) } "\n" }
+        // Of several sentences the first says what the others show together; their figures stand in a table.
+        @if let Some(sentence) = primary_outcome(figures).first() { p class="answer" { (sentence.replace(" < ", "\u{a0}<\u{a0}")) } "\n" }
         p class="lead" {
             (text::count(figures.trials, "trial", "trials")) " of "
             (text::count(figures.participants, "participant", "participants")) ", " (totals.actions) " recorded presses."
@@ -147,6 +158,7 @@ fn summary(figures: &StudySummary) -> Markup {
         }
         @if let Some(missing) = in_words(&figures.missing_trials) { p class="note" { (missing) } "\n" }
         @for one in &figures.corrections { p class="note" { (one.in_words()) "." } "\n" }
+        @if let Some(foreign) = foreign_in_words(&figures.foreign) { p class="warning" { (foreign) "." } "\n" }
         @if let Some(copies) = copies_in_words(&figures.copies) { p class="note" { (copies) } "\n" }
         @if let Some(found) = &figures.raters { (raters(found, figures)) }
         @for one in &figures.identical_codes { p class="warning" { (one.in_words()) "." } "\n" }
@@ -155,10 +167,20 @@ fn summary(figures: &StudySummary) -> Markup {
         }
         div class="cards" {
             "\n"
-            (card(&percent(totals.error_rate), "of the presses of both agents are errors of the human"))
-            (card(&percent(totals.belief_related_share), "of the errors are caused by false beliefs"))
-            (card(&number(totals.mean_sequence_length, 1), "errors per sequence on average"))
+            @for rate in rates { (rate) }
             (effect)
+        }
+        "\n"
+        div class="figures" {
+            (captions.figure(charts::rates_by_condition(trials, outcome), html! {
+                "A line joins the trials of a participant; black is the mean of the participants\u{2019} rates. The figures above and the \
+                 tables are the rates of all presses pooled."
+                @if figures.conditions.len() == 2 { (keys(&[("first", "assisted first"), ("second", "unassisted first")])) }
+            }))
+            @if let Some(found) = &figures.arms {
+                (captions.figure(charts::ratios(&found.contrasts), "Ratio of the rates of two conditions, with its interval. Below 1 the \
+                    first one has fewer; an interval across the line at 1 shows no difference."))
+            }
         }
         "\n"
     }
@@ -193,7 +215,7 @@ const MOST_TRIALS: usize = 60;
 
 fn trials_section(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStatistics]) -> Markup {
     let content = html! {
-        div class="scroll long" { (counting(captions, trials)) } "\n"
+        div class="long" { (counting(captions, trials)) } "\n"
         h3 { "Excluded" } "\n"
         (left_out(captions, figures))
         @if figures.practice > 0 {
@@ -205,7 +227,7 @@ fn trials_section(captions: &mut Captions, figures: &StudySummary, trials: &[Tri
         @if let Some(waived) = WaivedPractice::in_words(&figures.waived) { p class="note" { "P" (&waived[1..]) "." } "\n" }
         (without_display(trials))
     };
-    section("Trials", content)
+    captions.section("Trials", content)
 }
 
 /// How often participants' displays were lost; empty if none was.
@@ -262,14 +284,14 @@ fn left_out(captions: &mut Captions, figures: &StudySummary) -> Markup {
     captions.table_of_text("Excluded trials.", &["recording", "participant", "reason"], &rows)
 }
 
-fn definitions() -> Markup {
+fn definitions(captions: &mut Captions) -> Markup {
     let content = html! {
         dl { @for (term, text) in DEFINITIONS { "\n" dt { (term) } "\n" dd { (text) } } } "\n"
     };
-    section("Definitions", content)
+    captions.section("Definitions", content)
 }
 
-fn files(tables: &[CsvTable]) -> Markup {
+fn files(captions: &mut Captions, tables: &[CsvTable]) -> Markup {
     let content = html! {
         p {
             "Beside this page: "
@@ -282,5 +304,5 @@ fn files(tables: &[CsvTable]) -> Markup {
         }
         "\n"
     };
-    section("Tables", content)
+    captions.section("Tables", content)
 }

@@ -9,8 +9,7 @@ use crate::analysis::probe_figures::{
 use crate::charts;
 use crate::figures::StudySummary;
 use crate::report::elements::{
-    Captions, PageColumn, UNKNOWN, arm, cells, count, keys, nothing, number, p_value, percent, range, scroll, section,
-    with_interval,
+    Captions, PageColumn, UNKNOWN, arm, cells, count, keys, nothing, number, p_value, percent, range, with_interval,
 };
 use crate::robot_tally::{ArmSafetySummary, RobotArmTotals};
 use tomcom_core::base::text;
@@ -64,7 +63,8 @@ pub(super) fn beside_the_paper(captions: &mut Captions, figures: &StudySummary) 
     }
     let caption =
         "All trials together. Paper: Buehler, Adamy and Weisswange (2021); its 6.9 % is per press of both agents.";
-    section("Comparison with the paper", captions.table(caption, &["", "here", "paper"], &rows))
+    let table = captions.table(caption, &["", "here", "paper"], &rows);
+    captions.section("Comparison with the paper", table)
 }
 
 fn kinds(figures: &StudySummary) -> String {
@@ -78,12 +78,12 @@ pub(super) fn similarity(captions: &mut Captions, figures: &StudySummary) -> Mar
     let content = html! {
         (matches(captions, figures))
         @if let Some(wizard) = &figures.wizard {
-            h3 { "The wizard" } "\n"
+            @if figures.similarity.is_some() { h3 { "The wizard" } "\n" }
             (captions.table(performance(figures), &["", "over all trials"], &wizard_rows(wizard)))
         }
         @if let Some(found) = &figures.offers { (offers(found)) }
     };
-    section("Wizard and assistant", content)
+    captions.section("Wizard and assistant", content)
 }
 
 fn performance(figures: &StudySummary) -> String {
@@ -169,24 +169,25 @@ fn limits(figures: &StudySummary, wizard: &WizardMeasures) -> Markup {
     }
 }
 
-fn wizard_rows(wizard: &WizardMeasures) -> [Vec<Markup>; 11] {
-    let row = |what: &str, value: Option<u64>| cells([&what, &count(value)]);
-    [
-        row("signals sent", Some(wizard.signals)),
-        row("signals taken back", Some(wizard.taken_back)),
-        row("false beliefs that led to errors", wizard.episodes),
-        row("of these hit by a signal", wizard.hits),
-        row("of these missed", wizard.omissions),
-        row("repeated: about a false belief that was hit already", wizard.repeated),
-        row("late: about a false belief that was corrected just before", wizard.late),
-        row("wrong: about a right belief while another was false", wizard.wrong_targets),
-        row("needless: while no belief was false", wizard.needless),
-        row("harmless: about a false belief that led to no error", wizard.harmless),
-        cells([
-            &"median seconds from the start of a false belief to its signal",
-            &number(wizard.latency_s.map(|times| times.median), 1),
-        ]),
-    ]
+/// What is not known of these participants has no row.
+fn wizard_rows(wizard: &WizardMeasures) -> Vec<Vec<Markup>> {
+    let counts = [
+        ("signals sent", Some(wizard.signals)),
+        ("signals taken back", Some(wizard.taken_back)),
+        ("false beliefs that led to errors", wizard.episodes),
+        ("of these hit by a signal", wizard.hits),
+        ("of these missed", wizard.omissions),
+        ("repeated: about a false belief that was hit already", wizard.repeated),
+        ("late: about a false belief that was corrected just before", wizard.late),
+        ("wrong: about a right belief while another was false", wizard.wrong_targets),
+        ("needless: while no belief was false", wizard.needless),
+        ("harmless: about a false belief that led to no error", wizard.harmless),
+    ];
+    let known = counts.into_iter().filter_map(|(what, value)| Some(cells([&what, &value?])));
+    let latency = wizard.latency_s.map(|times| {
+        cells([&"median seconds from the start of a false belief to its signal", &number(Some(times.median), 1)])
+    });
+    known.chain(latency).collect()
 }
 
 pub(super) fn people(captions: &mut Captions, figures: &StudySummary) -> Markup {
@@ -199,8 +200,8 @@ pub(super) fn people(captions: &mut Captions, figures: &StudySummary) -> Markup 
             }
             "\n"
         }
-        @if !figures.questionnaire_scores.is_empty() { (scroll(scores(captions, figures))) }
-        @if !figures.questionnaires.is_empty() { (scroll(items(captions, figures))) }
+        @if !figures.questionnaire_scores.is_empty() { (scores(captions, figures)) }
+        @if !figures.questionnaires.is_empty() { (items(captions, figures)) }
         @if let Some(found) = &figures.tutorial {
             p {
                 "Check of understanding in the tutorial: " (found.right_at_once) " of " (found.questions)
@@ -209,7 +210,7 @@ pub(super) fn people(captions: &mut Captions, figures: &StudySummary) -> Markup 
             "\n"
         }
     };
-    section("Questionnaires", content)
+    captions.section("Questionnaires", content)
 }
 
 fn asked_after(after: Option<StudyArm>) -> String {
@@ -293,7 +294,8 @@ pub(super) fn robot(captions: &mut Captions, figures: &StudySummary) -> Markup {
         "Sums over trials, pauses included, by arm. A timed arm has no contacts. Values of each trial are in "
         code { "trials.csv" } "."
     };
-    section("The robot", captions.table(caption, &heads, &rows))
+    let table = captions.table(caption, &heads, &rows);
+    captions.section("The robot", table)
 }
 
 pub(super) fn awareness(captions: &mut Captions, figures: &StudySummary) -> Markup {
@@ -312,7 +314,7 @@ pub(super) fn awareness(captions: &mut Captions, figures: &StudySummary) -> Mark
             }
         }
         "\n"
-        (scroll(accuracies(captions, found)))
+        (accuracies(captions, found))
         h3 { "The estimate against the answers" } "\n"
         (estimate(found))
         div class="figures" {
@@ -322,13 +324,13 @@ pub(super) fn awareness(captions: &mut Captions, figures: &StudySummary) -> Mark
             }))
         }
         "\n"
-        (scroll(probe_scores(captions, found)))
+        (probe_scores(captions, found))
         @if let Some(known) = &found.by_true_beliefs { (by_true_beliefs(known)) }
         @for one in &found.level_2 {
             p { "Asked " (one.group) ": " (percent(one.accuracy)) " of " (one.n) " answers were right" (interval(one.interval)) "." } "\n"
         }
     };
-    section("What people knew", content)
+    captions.section("What people knew", content)
 }
 
 /// Text ", interval of 95 %: …" after a share; empty without an interval.

@@ -29,36 +29,51 @@ pub fn participants<'a>(
     })
 }
 
-impl ParticipantRow<'_> {
+/// Words for the number of a trial.
+const NTH: [&str; 6] = ["first", "second", "third", "fourth", "fifth", "sixth"];
+
+impl<'a> ParticipantRow<'a> {
     /// `None` unless two trials of the participant count and have the measure.
     fn pair(&self, measure: StudyMeasure) -> Option<TrialPair> {
         pairs(self.0, measure).pairs.pop()
     }
-}
 
-impl CsvRow for ParticipantRow<'_> {
-    const TABLE: CsvTable = CsvTable::Participants;
+    /// Of the trial with this number, from 1; of a repeated one the last that counts.
+    fn value(&self, measure: StudyMeasure, period: usize) -> Option<f64> {
+        let is_it = |trial: &&TrialStatistics| trial.counts() && trial.period == Some(period as u32);
+        (measure.value)(self.0.iter().rfind(is_it)?)
+    }
 
-    fn columns() -> Vec<TableColumn<Self>> {
+    /// A measure has a column for each trial of a participant: at least two, and as many as these trials have.
+    pub fn columns_of(trials: &[TrialStatistics]) -> Vec<TableColumn<ParticipantRow<'a>>> {
+        let periods = trials.iter().filter_map(|trial| trial.period).max().unwrap_or(0) as usize;
+        ParticipantRow::columns_up_to(periods.clamp(2, NTH.len()))
+    }
+
+    fn columns_up_to(periods: usize) -> Vec<TableColumn<ParticipantRow<'a>>> {
         let mut columns: Vec<TableColumn<Self>> = columns! { |row: Self|
             "participant", "", "participant code; prefixed by the seed if several seeds are analysed together"
                 => &row.0[0].participant;
             "kind", "", "kind of participant: simulated, keyboard (at the console) or display (at the wall display)"
                 => row.0[0].kind_name();
-            "group", "", "starting group in the study plan; AB: conditions in the plan's order"
+            "group", "", "starting group in the study plan, with a letter for each trial; A: the plan's first condition"
                 => row.0[0].group.as_ref();
             "trials", "trials", "number of recorded trials" => row.0.len() as u64;
             "trials_counted", "trials", "number of trials that are not left out"
                 => row.0.iter().filter(|trial| trial.counts()).count() as u64;
-            "assisted_second", "", "whether the second trial is the assisted one; empty without a pair of trials that \
-                count" => row.pair(HEADLINE).map(|pair| pair.assisted_second);
         };
+        if periods == 2 {
+            columns.extend(columns! { |row: Self|
+                "assisted_second", "", "whether the second trial is the assisted one; empty without a pair of trials that \
+                    count" => row.pair(HEADLINE).map(|pair| pair.assisted_second);
+            });
+        }
         for measure in MEASURES {
-            for (index, period) in ["first", "second"].into_iter().enumerate() {
+            for (index, nth) in NTH.into_iter().enumerate().take(periods) {
                 let name = format!("{}_{}", measure.name, index + 1);
-                let meaning = measure.meaning_in.replace("{}", period);
+                let meaning = measure.meaning_in.replace("{}", nth);
                 columns.push(TableColumn::new(name, measure.unit, meaning, move |row: &Self| {
-                    row.pair(measure).map(|pair| pair.values[index]).into()
+                    row.value(measure, index + 1).into()
                 }));
             }
         }
@@ -71,6 +86,14 @@ impl CsvRow for ParticipantRow<'_> {
                 => row.1.map(|consent| &consent.digest);
         });
         columns
+    }
+}
+
+impl CsvRow for ParticipantRow<'_> {
+    const TABLE: CsvTable = CsvTable::Participants;
+
+    fn columns() -> Vec<TableColumn<Self>> {
+        ParticipantRow::columns_up_to(2)
     }
 }
 

@@ -76,9 +76,9 @@ impl CsvRow for TrialStatistics {
             "recording", "", "folder of the recording; key of all tables by recording" => &t.recording;
             "participant", "", "as in participants" => &t.participant;
             "kind", "", "as in participants" => t.kind_name();
-            "seed", "", "seed of all random streams" => t.seed;
+            "seed", "", "seed of the session, of which the random streams of each trial follow; BIDS has that of the trial" => t.seed;
             "group", "", "as in participants" => t.group.as_ref();
-            "period", "", "1: the participant's first trial, 2: the second" => t.period;
+            "period", "", "number of the trial in the participant's series; 1: the first" => t.period;
             "condition", "", "who sends signals: none, wizard or assistant" => t.condition.name();
             "assisted", "", "whether the planned arm has signals, of the wizard or the assistant" => t.is_assisted();
             "counts", "", "whether the trial counts; false: left out of all statistics" => t.counts();

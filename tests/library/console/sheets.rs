@@ -341,7 +341,7 @@ fn the_sheet_of_the_tutorial_tells_where_the_participant_is() {
         }
         // One key does not end it: what is left of it cannot be shown again.
         assert_eq!(stage.key(KeyCode::Char('0')), None);
-        stage.shows(size, &["End the tutorial?"]);
+        stage.shows(size, &["End the tutorial?", "The participant does not see its other pages,"]);
         let ended = TutorialEvent::Ended { by: TutorialPageTurner::Wizard };
         assert_eq!(input(stage.key(KeyCode::Char('y'))), Some(Event::Protocol(ProtocolEvent::Tutorial(ended))));
     }
@@ -603,7 +603,7 @@ fn a_practice_criterion_is_waived_for_a_preset_reason_or_in_words() {
     let mut stage = failed_practice();
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Char('2')), None);
-    stage.shows_everywhere(&["[2] no time", "enter waive for this reason"]);
+    stage.shows_everywhere(&["[2] no time", "enter waive for this reason", "bksp none"]);
     assert_eq!(stage.key(KeyCode::Enter), None);
     stage.shows_everywhere(&["no time for more practice: in words"]);
     stage.wait(1.0);
@@ -669,6 +669,32 @@ fn a_console_names_the_arm_of_the_plan() {
     stage.shows((120, 40), &["/2, wizard with advice"]);
     stage.at(0.0, Event::TrialStarted);
     stage.shows((120, 40), &["/2 wizard with advice"]);
+}
+
+/// A repeated trial is that of which the display froze, so the head line keeps its state.
+#[test]
+fn a_repeated_trial_keeps_the_state_of_the_display_in_the_head_line() {
+    let study = session_file("study").study().expect("a plan");
+    let (spec, _) = study.settings(WantedRecording { participant: 0, slot: 1, attempt: 2, instructed: true });
+    let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
+    stage.session = Session::new(kitchen("sushi"), spec, 0);
+    stage.next_phase();
+    stage.model.display = Some(ParticipantDisplayHealth {
+        redraw_ms: Some(84.0),
+        page: Some([1920, 1080]),
+        ..ParticipantDisplayHealth::default()
+    });
+    stage.at(0.0, Event::TrialStarted);
+    let head = |stage: &Stage| stage.screen((120, 40)).lines().next().expect("a line").to_string();
+    let told = head(&stage);
+    assert!(told.contains("trial 1/2 attempt 2") && told.contains("display"), "{told}");
+    // The question before its end says what is kept.
+    stage.model.dialog = Some(Dialog::EndTrial);
+    let presses = stage.session.spec.trial.presses;
+    stage.shows_everywhere(&[
+        &format!("It counts with 0 of {presses} presses"),
+        "aborts it instead: then it does not count",
+    ]);
 }
 
 #[test]

@@ -3,11 +3,12 @@
 use tomcom_core::measures::raters::BeliefSource;
 use tomcom_session::plan::QuestionnaireItemKind;
 use tomcom_session::questionnaire::AnswerValue;
+use tomcom_study::arm_comparison::ContrastVerdict;
 use tomcom_study::headline::{mixed_sources, primary_outcome};
 use tomcom_study::pass::describe;
 use tomcom_study::trial_statistics::{AskedItem, QuestionnaireAnswer, TrialStatistics};
 
-use super::{page, summary, trials};
+use super::{page, summary, trial, trials};
 use crate::support::*;
 
 #[test]
@@ -29,6 +30,58 @@ fn the_first_sentence_is_the_primary_outcome_and_says_no_more_than_its_interval(
     one.retain(|trial| trial.condition == Condition::None);
     let told = primary_outcome(&summary(&one));
     assert!(told[0].ends_with("unassisted 20.0; one condition, so nothing is compared."), "{told:?}");
+}
+
+/// Three conditions: one sentence says what their contrasts show together, and no interval contradicts it.
+#[test]
+fn several_contrasts_are_told_together_and_agree_with_their_intervals() {
+    let arms = [StudyArm::None, StudyArm::Wizard, StudyArm::TomCom];
+    let study = |rates: [u64; 3]| -> Vec<TrialStatistics> {
+        (0..12_u64)
+            .flat_map(|person| {
+                (0..3_usize).map(move |period| {
+                    let which = (period + person as usize) % 3;
+                    let errors = rates[which] + (person * 7 + period as u64 * 5) % 9;
+                    let arm = arms[which];
+                    TrialStatistics {
+                        recording: format!("P{person:02}-{period}"),
+                        participant: format!("P{person:02}"),
+                        study_arm: arm,
+                        planned_arm: arm,
+                        condition: arm.condition(),
+                        ..trial("", period as u32 + 1, Condition::None, errors)
+                    }
+                })
+            })
+            .collect()
+    };
+    let mut verdicts = BTreeSet::new();
+    for rates in [[40, 15, 15], [12, 10, 9], [12, 12, 12], [20, 17, 16], [15, 13, 12]] {
+        let trials = study(rates);
+        let figures = summary(&trials);
+        let found = figures.arms.as_ref().expect("a comparison");
+        for one in &found.contrasts {
+            let spans_one = one.interval[0] < 1.0 && one.interval[1] > 1.0;
+            assert_eq!(one.verdict() == ContrastVerdict::Shown, !spans_one, "{one:?}");
+            assert!(one.level >= 0.95 - 1e-9 && one.level < 0.984, "{one:?}");
+            verdicts.insert(format!("{:?}", one.verdict()));
+        }
+        let told = primary_outcome(&figures);
+        assert_eq!(told.len(), 4, "{told:?}");
+        assert!(!told[0].contains("Primary outcome"), "{told:?}");
+        // The report begins with the sentence, and shows each condition's rate and picture before all else.
+        let page = page(&figures, &trials);
+        let at = |words: &str| page.find(words).unwrap_or_else(|| panic!("{words}"));
+        assert!(at(&told[0]) < at("class=\"cards\"") && at("class=\"cards\"") < at("Figure\u{a0}1."));
+        assert!(at("Figure\u{a0}1.") < at("<nav>") && at("<nav>") < at("Comparison with the paper"));
+    }
+    let clear = primary_outcome(&summary(&study([40, 15, 15])));
+    assert_eq!(
+        clear[0],
+        "Fewer errors in wizard and in ToM-Com trials than in unassisted trials; no difference shown between ToM-Com and \
+         wizard trials."
+    );
+    assert!(verdicts.contains("Shown") && verdicts.contains("NoDifference"), "{verdicts:?}");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! The study against its plan: plans that were frozen before it, and trials that have no recording.
 
+use tomcom_session::plan::PlanSpec;
 use tomcom_study::files::pool_file::{freeze, read_frozen};
 use tomcom_study::frozen_plan::{FrozenDefinition, FrozenPlan, PlaceInPlan, PreregistrationCheck, RecordedPlan};
 use tomcom_study::planned_trial::{MissingTrials, in_words, missing_trials};
@@ -30,12 +31,14 @@ fn a_recording_of_another_plan_is_none_of_a_participant_of_the_frozen_one() {
     all[2].plan = Some(("another".to_string(), "0".to_string()));
     let told = differences(&frozen, &all);
     let code = &frozen.participants[2];
-    assert!(told.contains(&format!("1 participant is without a recording: {code}")), "{told:?}");
-    assert!(told.contains(&"1 recording is of the plan \"another\"".to_string()), "{told:?}");
+    assert_eq!(told, ["1 recording is of the plan \"another\""]);
+    let check = PreregistrationCheck::new("0".to_string(), &frozen, &all, 0);
+    assert_eq!(check.to_come, [code.clone()]);
+    assert!(check.words().ends_with(&format!("1 participant has no recording so far: {code}.")), "{}", check.words());
 }
 
 fn differences(frozen: &FrozenPlan, recordings: &[RecordedPlan]) -> Vec<String> {
-    PreregistrationCheck::new("0".to_string(), frozen, recordings).differences
+    PreregistrationCheck::new("0".to_string(), frozen, recordings, 0).differences
 }
 
 #[test]
@@ -92,10 +95,13 @@ fn each_difference_is_told() {
     );
     let other = FrozenPlan { plan: "other".to_string(), ..plan.clone() };
     let found = differences(&other, &all);
-    assert_eq!((found.len(), found[0].as_str()), (2, "20 recordings are of the plan \"arms\""), "{found:?}");
-    assert!(found[1].starts_with("20 participants are without a recording: P01, "), "{found:?}");
+    assert_eq!(found, ["20 recordings are of the plan \"arms\""]);
     differs(|plan| plan.plan_digest = "0".to_string(), "20 recordings are of another version of the plan");
-    differs(|plan| plan.participants.push("P99".to_string()), "1 participant is without a recording: P99");
+    let running = FrozenPlan { participants: [&plan.participants[..], &["P99".to_string()]].concat(), ..plan.clone() };
+    let words = PreregistrationCheck::new("0".to_string(), &running, &all, 0).words();
+    assert!(words.starts_with("So far as preregistered: ") && words.ends_with("no recording so far: P99."), "{words}");
+    let ended = PreregistrationCheck::new("0".to_string(), &plan, &all, 3).differences;
+    assert_eq!(ended, ["the wizard ended 3 trials that count early"]);
     differs(|plan| drop(plan.participants.pop()), "1 participant is not in the frozen plan: P20");
     let alone = [&all[..], &[RecordedPlan { participant: "P01".to_string(), plan: None, place: None }]].concat();
     assert_eq!(differences(&plan, &alone), ["1 recording is of no plan"]);
@@ -181,4 +187,46 @@ fn a_recording_whose_code_was_corrected_is_of_the_participant_who_has_the_code()
     let told = "2 trials of the plan \"short\" have no recording: P02 trial 1; P09 trial 1";
     assert_eq!(in_words(&missing).as_deref(), Some(told));
     assert_eq!(missing[1].participant, None, "its number in the plan is not known");
+}
+
+#[test]
+fn what_changed_in_a_plan_since_a_recording_is_named() {
+    let files = session_file("study");
+    let before = files.study().expect("a plan");
+    let wanted = WantedRecording { participant: 0, slot: 1, attempt: 1, instructed: true };
+    let (spec, trial) = before.settings(wanted);
+    let header = LogHeader::new(spec, trial, files.kitchen.layout.clone(), files.kitchen.recipes.clone());
+    let changed = |change: fn(&mut SessionSetup)| {
+        let mut now = files.clone();
+        change(&mut now);
+        let study = now.study().expect("a plan");
+        assert_ne!(study.digest, before.digest);
+        study.changed_since(&header, [&now.kitchen.layout, &now.kitchen.recipes]).join(", ")
+    };
+    let plan = |now: &mut SessionSetup, change: fn(&mut PlanSpec)| change(now.spec.plan.as_mut().expect("a plan"));
+    assert!(changed(|now| now.kitchen.recipes.text.push_str("# a dish")).ends_with("recipes/sushi.toml"));
+    assert_eq!(changed(|now| now.spec.trial.presses = 100), "[trial]");
+    let told = changed(|now| now.questionnaires[0].title.push('!'));
+    assert_eq!(told, "what participants are told, taught or asked");
+    let mut now = files.clone();
+    plan(&mut now, |plan| plan.block = Some(4));
+    let study = now.study().expect("a plan");
+    assert_eq!(study.changed_since(&header, [&now.kitchen.layout, &now.kitchen.recipes]), ["[plan]"]);
+}
+
+/// Three conditions made of a plan that asks after its two trials: the last questionnaire would be lost without a word.
+#[test]
+fn a_plan_tells_what_it_does_not_ask_and_what_is_in_another_language() {
+    let mut files = session_file("study");
+    assert_eq!(files.study().expect("a plan").remarks(), Vec::<String>::new());
+    let plan = files.spec.plan.as_mut().expect("a plan");
+    plan.conditions.push(StudyArm::TomCom);
+    plan.questionnaire[0].after = Some(vec![1, 2]);
+    files.spec.display.language = "fr".to_string();
+    let remarks = files.study().expect("a plan").remarks();
+    assert_eq!(remarks[0], "the questionnaire \"acceptance\" is asked after trial 1 and 2 of 3 trials only");
+    assert!(
+        remarks[1]
+            .starts_with("the display's language is \"fr\", but not that of the questionnaire \"acceptance\" (en)")
+    );
 }

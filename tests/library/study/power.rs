@@ -4,6 +4,7 @@ use rand_distr::{Distribution, Gamma, Normal, Poisson};
 use tomcom_session::plan::{PrimaryOutcome, StudyAims, orders};
 use tomcom_study::arm_comparison::compare_arms;
 use tomcom_study::arm_table::StudyArmTable;
+use tomcom_study::charts;
 use tomcom_study::drawn_study::{DrawnEffect, SignificanceTestMethod, StudySampler, results, tests};
 use tomcom_study::effect::{effect, pairs};
 use tomcom_study::files::pool_file::{read_pool, write_pool};
@@ -91,7 +92,7 @@ fn a_huge_effect_is_found_and_few_participants_are_needed() {
     let [few, more] = [0, 1].map(|index| found.sizes[index].tests[1].least_ratio.expect("an effect is found"));
     assert!(few < more && more < 0.8, "more participants find less: {few} and {more}");
     let text = describe(&found);
-    assert!(text.contains("8 participants are needed for a power of 0.8."), "{text}");
+    assert!(text.contains("Of the numbers tried, 8 is the least with a power of 0.8."), "{text}");
     assert!(text.contains("four of five studies find an effect that takes away"), "{text}");
 }
 
@@ -109,6 +110,20 @@ fn without_an_effect_one_study_in_twenty_finds_one() {
     let any = three.sizes[0].any.expect("several contrasts");
     assert!((0.015..=0.085).contains(&any.share), "after Holm's correction: {any:?}");
     assert!(any.rejected_uncorrected > any.rejected, "without it there are more: {any:?}");
+    // Every contrast says that it is corrected, and has a line of its own, with its name.
+    let (text, picture) = (describe(&three), charts::power(&three));
+    let mut lines = BTreeSet::new();
+    for (arm, against) in [("wizard", "none"), ("tom-com", "none"), ("tom-com", "wizard")] {
+        let name = format!("{arm} to {against}");
+        assert!(
+            text.contains(&format!("{name}, linear mixed model, corrected for the number of contrasts (Holm)")),
+            "{text}"
+        );
+        assert!(picture.contains(&format!(">{name}</text>")), "{picture}");
+        let points = picture.lines().find(|line| line.contains("<circle") && line.contains(&format!("<title>{name}")));
+        lines.extend(points.and_then(|line| line.split('"').nth(1)));
+    }
+    assert_eq!(lines.len(), 3, "colours: {lines:?}");
 }
 
 #[test]

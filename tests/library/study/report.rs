@@ -79,7 +79,7 @@ fn few_participants_have_no_r_among_the_main_results() {
         let summary = summary(&trials);
         let page = super::page(&summary, &trials);
         assert!(!page.contains("&lt; 0.001"), "p < 0.001 is not broken over two lines");
-        page.split("class=\"card\"").nth(4).expect("four cards").split("</div>").next().expect("a card").to_string()
+        page.split("class=\"card\"").nth(3).expect("three cards").split("</div>").next().expect("a card").to_string()
     };
     let few = card(6);
     assert!(few.contains("6 participants with both trials are fewer than 8") && !few.contains("r\u{a0}="), "{few}");

@@ -15,7 +15,8 @@ use tomcom_study::prevention::PreventionCounts;
 use tomcom_study::roc::ConceptPreventionCounts;
 use tomcom_study::study_part::AnalysedRecording;
 use tomcom_study::tables::participants::{
-    AnswerRow, TutorialAnswerCollector, TutorialQuestionRow, TutorialSummary, answers as answers_of, participants,
+    AnswerRow, ParticipantRow, TutorialAnswerCollector, TutorialQuestionRow, TutorialSummary, answers as answers_of,
+    participants,
 };
 use tomcom_study::tables::trials::{HEADLINE, MEASURES};
 use tomcom_study::trial_statistics::{AskedItem, QuestionnaireAnswer, TrialDetails, TrialStatistics};
@@ -181,7 +182,7 @@ fn columns_have_names_of_their_own_that_need_no_quotes() {
         let is_plain = |name: &&str| name.chars().all(|sign| matches!(sign, 'a'..='z' | '0'..='9' | '_'));
         assert_eq!(names.iter().find(|name| !is_plain(name)), None, "{}", table.name());
     }
-    let described: BTreeSet<CsvTable> = dictionary().map(|row| row.table).collect();
+    let described: BTreeSet<CsvTable> = dictionary(&[]).map(|row| row.table).collect();
     assert_eq!(described, CsvTable::ALL.iter().copied().collect());
 }
 
@@ -208,6 +209,24 @@ fn statistics_stand_in_both_tables_with_the_same_values() {
         assert!(said.iter().any(|text| text.contains("first")), "{said:?}");
         assert!(said.iter().all(|text| !text.contains("{}")), "{said:?}");
     }
+}
+
+/// A study of three trials each has columns for the third, and none that stays empty.
+#[test]
+fn participants_have_columns_for_all_of_their_trials() {
+    let [first, second] = pair();
+    let third = TrialStatistics { period: Some(3), errors: 7, ..first.clone() };
+    let trials = [first, second, third];
+    let columns = ParticipantRow::columns_of(&trials);
+    let rows: Vec<_> = participants(&trials, &[]).collect();
+    let value = |name: &str| columns.iter().find(|column| column.name == name).map(|column| column.cell(&rows[0]));
+    for (trial, period) in trials.iter().zip(1..) {
+        assert_eq!(value(&format!("errors_{period}")), Some(trial.errors.into()));
+    }
+    assert_eq!((value("errors_4"), value("assisted_second")), (None, None));
+    let listed: Vec<_> = dictionary(&trials).filter(|row| row.table == CsvTable::Participants).collect();
+    assert!(listed.iter().map(|row| &row.column).eq(columns.iter().map(|column| &column.name)));
+    assert!(listed.iter().any(|row| row.column == "errors_3" && row.meaning.contains("third")), "{listed:?}");
 }
 
 /// The fields of a column of a table in a folder.
@@ -258,7 +277,7 @@ fn tables_are_written_as_they_are_declared() {
     first.left_out = Some("excluded: \"slipped\", and\nleft".to_string());
     let trials = [first, second];
     assert_eq!(export.table::<TrialStatistics>(&trials).expect("a table"), Some(CsvTable::Trials));
-    assert_eq!(export.table::<DataDictionaryRow>(dictionary()).expect("a table"), Some(CsvTable::Dictionary));
+    assert_eq!(export.table::<DataDictionaryRow>(dictionary(&trials)).expect("a table"), Some(CsvTable::Dictionary));
     assert_eq!(export.table::<TrialStatistics>(&[]).expect("a table"), None, "a table without rows");
     assert_eq!(fields(&folder, CsvTable::Trials, "recording"), Vec::<String>::new());
     export.table::<TrialStatistics>(&trials).expect("a table");

@@ -41,8 +41,12 @@ fn the_program_carries_every_settings_file_of_the_project() {
 fn a_new_lab_simulates_every_session_and_overwrites_nothing() {
     let lab = folder("new").join("lab");
     let path = lab.display().to_string();
-    let files = carried::FILES.len() + 1;
-    assert!(done(&["new", &path]).contains(&format!("{files} files written")));
+    // Beside them a README, and four scripts that read recordings and tables.
+    let files = carried::FILES.len() + 5;
+    let told = done(&["new", &path]);
+    assert!(told.contains(&format!("{files} files written")), "{told}");
+    // What is tried first is no recording of the study.
+    assert!(told.ends_with("lab, and tomcom --out try. README.md says what else.\n"), "{told}");
     let own = lab.join("recipes/burger.toml");
     fs::write(&own, "# the lab's own\n").expect("written");
     fs::remove_file(lab.join("sessions/study.toml")).expect("removed");

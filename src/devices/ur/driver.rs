@@ -387,7 +387,7 @@ impl UrDriver {
                 None => {
                     let press = |button: &String| {
                         let button = button.clone();
-                        tell(Event::Press { agent: Agent::Human, button, at_ns: None })
+                        tell(Event::Press { agent: Agent::Human, button, at_ns: None, button_box: false })
                     };
                     self.waiting.extend(self.shared[number].as_ref().map(press));
                 }

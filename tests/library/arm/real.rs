@@ -46,7 +46,7 @@ fn aborts(events: &[Event]) -> Option<AbortReason> {
 }
 
 fn press(button: String) -> Event {
-    Event::Press { agent: Agent::Robot, button, at_ns: None }
+    Event::Press { agent: Agent::Robot, button, at_ns: None, button_box: false }
 }
 
 /// An engine whose arm is on its way to a button, and the button.
@@ -172,7 +172,7 @@ fn anything(kitchen: &Kitchen, random: &mut impl RngExt) -> Event {
         13 => {
             let human = &kitchen.buttons[Agent::Human.index()];
             let button = human[random.random_range(0..human.len())].name.clone();
-            Event::Press { agent: Agent::Human, button, at_ns: None }
+            Event::Press { agent: Agent::Human, button, at_ns: None, button_box: false }
         }
         14 => Event::RobotStopped,
         15 | 16 => press(button),

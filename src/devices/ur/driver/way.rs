@@ -132,7 +132,7 @@ impl UrDriver {
         if !touch.has_clicked {
             self.touch = Some(Touch { has_clicked: true, ..touch });
             let button = self.names[touch.button.index()].clone();
-            self.waiting.push(tell(Event::Press { agent: Agent::Robot, button, at_ns: None }));
+            self.waiting.push(tell(Event::Press { agent: Agent::Robot, button, at_ns: None, button_box: false }));
         }
         if let Task::Presses(number, _) = self.task {
             (self.over, self.task) = (number, Task::Rest);

@@ -174,8 +174,7 @@ impl Setting {
             for period in 1..=study.plan.conditions.len() as u32 {
                 let (spec, trial) = study.simulated(participant, period);
                 let cost = kept.take(&self.kitchen);
-                let mut engine =
-                    SessionEngine::new(self.kitchen.clone(), spec, trial, cost).without_unused_estimate();
+                let mut engine = SessionEngine::new(self.kitchen.clone(), spec, trial, cost).without_unused_estimate();
                 headless::run(&mut engine, |_| Ok::<(), Infallible>(())).unwrap_or_else(|never| match never {});
                 rates.add(&engine);
                 kept.keep(&self.kitchen, engine.into_follower().cost);

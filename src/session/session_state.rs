@@ -184,7 +184,7 @@ impl Session {
     pub fn age(&self, at: SessionTime, now: SessionTime) -> SessionTime {
         let end = match self.phase {
             TrialPhase::Ready | TrialPhase::Running => now,
-            TrialPhase::Paused | TrialPhase::Over(_) | TrialPhase::Closed => self.paused_at,
+            TrialPhase::Paused | TrialPhase::Over(_) | TrialPhase::Closed => now.min(self.paused_at),
         };
         let paused = self.pauses.iter().map(|&(from, until)| until.min(end) - from.max(at));
         paused.fold(end - at, |age, pause| age - pause)

@@ -164,6 +164,8 @@ pub struct ConsoleModel {
     pub rejected_gaze: Option<(RejectedGaze, SessionTime)>,
     /// Notices that were given about rejected gaze senders, with the time of the last one.
     rejections_told: Vec<(String, SessionTime)>,
+    /// When a gaze sender last closed its connection.
+    pub gaze_closed: Option<SessionTime>,
     /// Address and pairing code for gaze senders at other computers, if they may connect.
     pub gaze_pairing: Option<GazePairing>,
     /// What the session reads from its gaze file; `None` for other gaze sources.
@@ -200,6 +202,8 @@ pub struct ConsoleModel {
     pub(super) palette_chosen: Option<KeyAction>,
     /// Action that stands first in the open palette.
     pub(super) palette_first: Option<KeyAction>,
+    /// Actions that had no effect when the palette was opened.
+    pub(super) palette_idle: Vec<KeyAction>,
     /// Time at which enter last chose a row of a list, on [`ConsoleModel::clock`].
     pub(super) answered: Option<SessionTime>,
     /// Key that the last mouse click stood for, with the click's time on [`ConsoleModel::clock`].
@@ -239,6 +243,7 @@ impl ConsoleModel {
             rejected_senders: 0,
             rejected_gaze: None,
             rejections_told: Vec::new(),
+            gaze_closed: None,
             gaze_pairing: None,
             recorded_gaze: None,
             display: None,
@@ -261,6 +266,7 @@ impl ConsoleModel {
             gaze_choice: None,
             palette_chosen: None,
             palette_first: None,
+            palette_idle: Vec::new(),
             answered: None,
             clicked: None,
             exact_keys: false,

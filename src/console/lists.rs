@@ -48,8 +48,8 @@ impl ListCursor {
             KeyCode::Esc if self.filter.is_empty() => return ListReply::Left,
             KeyCode::Esc => self.filter.clear(),
             KeyCode::Backspace => drop(self.filter.pop()),
-            // Punctuation is not part of the filter, so that a question mark does not empty the list.
-            KeyCode::Char(letter) if letter.is_alphanumeric() => self.filter.push(letter),
+            // Other signs are not part of the filter, so that a question mark does not empty the list.
+            KeyCode::Char(letter) if is_typed(letter) => self.filter.push(letter),
             KeyCode::Char(' ') if !self.filter.is_empty() => self.filter.push(' '),
             _ => {}
         }
@@ -59,7 +59,7 @@ impl ListCursor {
 
     /// Adds the words of a pasted text to the filter.
     pub fn paste(&mut self, text: &str) {
-        self.filter.extend(text.chars().filter(|letter| letter.is_alphanumeric() || *letter == ' '));
+        self.filter.extend(text.chars().filter(|letter| is_typed(*letter) || *letter == ' '));
         self.at = 0;
     }
 
@@ -85,15 +85,19 @@ impl ListCursor {
         let joined = |line: &str| line.chars().filter(|letter| letter.is_alphanumeric()).collect::<String>();
         let rank = |text: String| {
             let text = text.to_lowercase();
-            let words = || text.split(|letter: char| !letter.is_alphanumeric());
+            // From each beginning of a word to the end of the text: what is typed can go over "/" and "-".
+            let is_word = |letter: Option<char>| letter.is_some_and(char::is_alphanumeric);
+            let begins = |at: usize| is_word(text[at..].chars().next()) && !is_word(text[..at].chars().next_back());
+            let ends = |rest: &str| !is_word(rest.chars().next());
+            let words = || text.char_indices().filter(|(at, _)| begins(*at)).map(|(at, _)| &text[at..]);
             let has = |is_it: &dyn Fn(&str, &str) -> bool| {
                 typed.split_whitespace().filter(|typed| words().any(|word| is_it(word, typed))).count()
             };
             let all = typed.split_whitespace().count();
-            let letters: String = typed.split_whitespace().collect();
+            let letters = joined(&typed);
             match () {
                 () if has(&|word, typed| word.starts_with(typed)) == all => {
-                    Some((0, (all - has(&|word, typed| word == typed)) as i64))
+                    Some((0, (all - has(&|word, typed| word.strip_prefix(typed).is_some_and(ends))) as i64))
                 }
                 () if text.lines().any(|line| joined(line).contains(&letters)) => Some((1, 0)),
                 () => {
@@ -117,6 +121,11 @@ impl ListCursor {
         }
         is_number
     }
+}
+
+/// Whether a typed sign is part of a filter.
+fn is_typed(letter: char) -> bool {
+    letter.is_alphanumeric() || matches!(letter, '/' | '-')
 }
 
 /// Last entry of every list of reasons: its words are typed.
@@ -315,6 +324,9 @@ pub(super) fn open(model: &mut ConsoleModel, session: &Session, filter: &str) {
     let does =
         |action: &&KeyAction| model.keys.chord_for(action).is_some() && is_possible_behind(session, model, action);
     model.palette_first = likely.into_iter().find(does).cloned();
+    let bindings = model.keys.bindings.iter().map(|line| &line.action);
+    let idle = bindings.filter(|action| !is_possible_behind(session, model, action)).cloned().collect();
+    model.palette_idle = idle;
     model.dialog = Some(Dialog::Palette(ListCursor { filter: filter.to_string(), at: 0 }));
 }
 
@@ -333,7 +345,8 @@ fn ends(action: &KeyAction) -> bool {
     )
 }
 
-/// The actions that match the filter, the best match first, else in the order of the help. Without a filter, the one that
+/// The actions that match the filter, the best match first, else in the order of the help; those without an effect when
+/// the palette was opened come last. Without a filter, the one that
 /// the palette was opened with is first, and what stops the robot or ends the trial or the session is last.
 pub fn actions<'a>(model: &'a ConsoleModel, cursor: &ListCursor) -> Vec<&'a KeyBinding> {
     let is_active =
@@ -343,7 +356,11 @@ pub fn actions<'a>(model: &'a ConsoleModel, cursor: &ListCursor) -> Vec<&'a KeyB
         active.sort_by_key(|line| (model.palette_first.as_ref() != Some(&line.action), ends(&line.action)));
     }
     let words = active.iter().map(|line| format!("{}\n{}\n{}", line.help, line.group, synonyms(&line.action)));
-    cursor.found(words).into_iter().map(|index| active[index]).collect()
+    let mut found: Vec<&KeyBinding> = cursor.found(words).into_iter().map(|index| active[index]).collect();
+    if !cursor.filter.is_empty() {
+        found.sort_by_key(|line| model.palette_idle.contains(&line.action));
+    }
+    found
 }
 
 /// An open list from which the user chooses a recording.
@@ -352,6 +369,8 @@ pub struct RecordingPicker {
     pub title: String,
     pub headings: Vec<String>,
     pub rows: Vec<Vec<String>>,
+    /// Number of recordings that are being read, until they are rows.
+    pub reading: Option<usize>,
     /// What is done with the chosen recording: "replay", "exclude".
     pub does: &'static str,
     pub cursor: ListCursor,
@@ -368,7 +387,7 @@ pub enum RecordingReply {
 impl RecordingPicker {
     /// A list of recordings without a filter, with the cursor on its first row.
     pub fn new(title: String, headings: Vec<String>, rows: Vec<Vec<String>>, does: &'static str) -> RecordingPicker {
-        RecordingPicker { title, headings, rows, does, cursor: ListCursor::default() }
+        RecordingPicker { title, headings, rows, reading: None, does, cursor: ListCursor::default() }
     }
 
     /// Indices of the rows that match the filter, the best match first.

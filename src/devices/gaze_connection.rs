@@ -67,8 +67,10 @@ pub(super) async fn attend(connection: GazeConnection) {
         () = place.closed() => Err(GazeSenderRejection::GaveWay),
         rejected = reader.read() => rejected,
     };
-    if let Err(why) = rejected {
-        rejections.report(from, why, Instant::now());
+    match rejected {
+        Err(why) => rejections.report(from, why, Instant::now()),
+        Ok(()) if reader.is_paired && reader.lines.has_line => drop(news.send(TrackerMessage::Closed).await),
+        Ok(()) => {}
     }
     if reader.clock.is_faulty() {
         // Nothing is wrong with the stamps of the next sender, as far as is known.

@@ -37,6 +37,8 @@ pub enum TrackerMessage {
     Connected(String),
     /// The program of an eye tracker no longer responds, for this reason.
     Lost(String),
+    /// A sender whose lines were read has closed its connection; others may be there.
+    Closed,
     SeesDisplay(bool),
     /// The tracker detects surfaces with these names, but not the display's surface.
     OtherSurfaces(Vec<String>),

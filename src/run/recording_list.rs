@@ -1,6 +1,8 @@
 //! The list of recordings of a folder, and how the user chooses one from it.
 
 use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, channel};
+use std::thread;
 use std::time::Duration;
 
 use super::error::{ReviewError, TerminalError};
@@ -169,38 +171,53 @@ fn read(path: &Path, depth: RecordingListDetail, cost: &mut KeptCost) -> FileRes
 const REDRAW: Duration = Duration::from_millis(100);
 
 /// Asks the person which recording of the folder to use; `None` if the person chooses no recording. `does`: what is done
-/// with it.
+/// with it. While the recordings are read, the page says so and takes what is typed.
 ///
 /// # Errors
 /// The folder cannot be read or has no recordings, or there is no terminal.
 pub fn pick(folder: &Path, does: &'static str) -> Result<Option<PathBuf>, ReviewError> {
-    let (list, paths) = list(folder, RecordingListDetail::Quick, |_| (), || ())?;
-    let mut newest: Vec<(&ListedRecording, PathBuf)> = list.recordings.iter().zip(paths).collect();
-    newest.sort_by_key(|(one, _)| std::cmp::Reverse((&one.date, &one.recording)));
-    // The list has no column of errors here, since counting errors takes long.
-    let without_errors = |cells: [String; 8]| {
-        let [code, kind, condition, date, length, _, state, recording] = cells;
-        vec![code, kind, condition, date, length, state, recording]
-    };
+    let number = recordings::of_folder(folder)?.len();
     let headings = without_errors(RecordingList::HEADINGS.map(str::to_string));
-    let rows = newest.iter().map(|(one, _)| without_errors(one.cells())).collect();
-    let title = format!("Which recording of {}?", list.folder);
-    let picker = RecordingPicker::new(title, headings, rows, does);
+    let title = format!("Which recording of {}?", folder.display());
+    let picker = RecordingPicker { reading: Some(number), ..RecordingPicker::new(title, headings, Vec::new(), does) };
+    let (tell, read) = channel();
+    let folder = folder.to_path_buf();
+    // Nobody waits for the list of a person who has left.
+    thread::spawn(move || drop(tell.send(newest_first(&folder))));
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(TerminalError)?;
-    let chosen = runtime.block_on(async {
+    runtime.block_on(async {
         let mut station = OperatorStation::without_devices(&ConsoleSpec::default())?;
-        let mut shell = OpenPicker { picker, theme: station.theme, dirty: true };
-        event_loop::run(&mut shell, &mut station).await
-    })?;
-    Ok(match chosen {
-        Some(RecordingReply::Chosen(index)) => newest.into_iter().nth(index).map(|(_, path)| path),
-        Some(RecordingReply::Leave) | None => None,
+        let mut shell = OpenPicker { picker, read, paths: Vec::new(), theme: station.theme, dirty: true };
+        let chosen = event_loop::run(&mut shell, &mut station).await?;
+        Ok(match chosen {
+            Some(RecordingReply::Chosen(index)) => shell.paths.into_iter().nth(index),
+            Some(RecordingReply::Leave) | None => None,
+        })
     })
+}
+
+/// Rows of the page, and the recordings' folders.
+type PickedRows = (Vec<Vec<String>>, Vec<PathBuf>);
+
+fn newest_first(folder: &Path) -> FileResult<PickedRows> {
+    let (list, paths) = list(folder, RecordingListDetail::Quick, |_| (), || ())?;
+    let mut newest: Vec<(ListedRecording, PathBuf)> = list.recordings.into_iter().zip(paths).collect();
+    newest.sort_by(|(one, _), (other, _)| (&other.date, &other.recording).cmp(&(&one.date, &one.recording)));
+    Ok(newest.into_iter().map(|(one, path)| (without_errors(one.cells()), path)).unzip())
+}
+
+/// The page has no column of errors, since counting errors takes long.
+fn without_errors(cells: [String; 8]) -> Vec<String> {
+    let [code, kind, condition, date, length, _, state, recording] = cells;
+    vec![code, kind, condition, date, length, state, recording]
 }
 
 /// A list of recordings from which none has been chosen yet.
 struct OpenPicker {
     picker: RecordingPicker,
+    /// The rows, once they are read.
+    read: Receiver<FileResult<PickedRows>>,
+    paths: Vec<PathBuf>,
     theme: Theme,
     /// Whether the list of recordings has to be redrawn.
     dirty: bool,
@@ -228,6 +245,10 @@ impl ConsoleShell for OpenPicker {
     }
 
     fn take(&mut self, event: LoopEvent) -> Result<Option<RecordingReply>, ReviewError> {
+        if let Ok(read) = self.read.try_recv() {
+            (self.picker.rows, self.paths) = read?;
+            (self.picker.reading, self.dirty) = (None, true);
+        }
         let LoopEvent::Terminal(message) = event else { return Ok(None) };
         self.dirty = true;
         Ok(match message {

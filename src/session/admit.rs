@@ -138,6 +138,8 @@ pub fn hygiene(session: &Session, now: SessionTime, event: &Event) -> Result<(),
     let (cool_down_s, since) = (session.spec.signals.cool_down_s, session.signalled_at);
     match since.map(|since| now.secs_since(since)).filter(|&age_s| age_s < cool_down_s) {
         Some(age_s) => {
+            // Rounded down, so that the age is never that of a signal that could be sent.
+            let age_s = (10.0 * age_s).floor() / 10.0;
             Err(format!("too soon: the last signal is {age_s:.1} s ago, signals need {cool_down_s} s between them"))
         }
         None => Ok(()),

@@ -4,6 +4,7 @@
 use crate::admit::{admit, is_too_early};
 use crate::event::{SignalEndReason, TrialEndReason};
 use crate::gaze_samples::take_sample;
+use crate::tracker::TrackerEvent;
 use crate::{
     Event, ServedOrder, Session, ShownSignal, TimelineEntry, TimelineEvent, TimestampedEvent, TrialPhase, gaze_check,
     offers, probes, protocol,
@@ -65,7 +66,12 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
         }
         Event::FocusLost | Event::FocusRegained => session.note_event(now, &stamped.event),
         Event::Gaze(sample) => take_sample(session, now, *sample),
-        Event::Tracker(event) => session.tracker.apply(now, event),
+        Event::Tracker(event) => {
+            session.tracker.apply(now, event);
+            if matches!(event, TrackerEvent::Connected { .. } | TrackerEvent::Lost { .. }) {
+                session.note_event(now, &stamped.event);
+            }
+        }
         Event::ButtonBox(event) => session.button_box.apply(now, event),
         Event::Calibration(event) => gaze_check::apply(session, now, event),
         Event::Press { agent, button: name, button_box, .. } => {

@@ -1,4 +1,5 @@
-//! What each order needs, and what of it is there already: on its place, ready elsewhere, or in work.
+//! What each order needs, and what of it is there already: on its place, ready elsewhere, or in work; once all is there,
+//! which step is left.
 //!
 //! Two orders can need the same content, and it counts for one of them only. It stays with that order as it is moved,
 //! stacked and processed, as long as it can still become something that the order needs; so no tick moves unless
@@ -18,8 +19,20 @@ pub struct OrderNeeds {
     pub dish: DishId,
     /// In the order of the recipe file.
     pub items: Vec<NeededItem>,
+    /// Once nothing is missing or in work.
+    pub last_step: Option<LastStep>,
     /// Whether a stack was begun for it, and for no other order: it is worked on.
     pub is_begun: bool,
+}
+
+/// The next of the steps from an order's items to its served dish.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LastStep {
+    /// Items are ready, but not in the stack.
+    Stack,
+    /// The whole stack is at this location, not on the plate.
+    Plate(LocationId),
+    Serve,
 }
 
 /// An item of an order's recipe.
@@ -113,7 +126,7 @@ impl OrderWork {
             .map(|(order, dish)| {
                 let items = &kitchen.content(kitchen.dish(dish).stack()).items;
                 let items = items.iter().map(|&item| NeededItem { item, progress: ItemProgress::Missing }).collect();
-                OrderNeeds { order, dish, items, is_begun: false }
+                OrderNeeds { order, dish, items, last_step: None, is_begun: false }
             })
             .collect();
         let mut turns: Vec<usize> = (0..orders.len()).collect();
@@ -175,8 +188,24 @@ impl OrderWork {
             }
         }
         let is_only = orders.iter().filter(|needs| needs.is_begun).count() == 1;
-        orders.iter_mut().for_each(|needs| needs.is_begun &= is_only);
+        for needs in &mut orders {
+            needs.is_begun &= is_only;
+            needs.last_step = self.last_step(kitchen, needs);
+        }
         orders
+    }
+
+    fn last_step(&self, kitchen: &Kitchen, needs: &OrderNeeds) -> Option<LastStep> {
+        let is_there = |needed: &NeededItem| matches!(needed.progress, ItemProgress::Stacked | ItemProgress::Ready(_));
+        let whole = kitchen.dish(needs.dish).stack();
+        let has_whole = |place: &LocationId| {
+            self.counts_for[place.index()] == Some(needs.order) && self.state.content(*place) == whole
+        };
+        match kitchen.location_ids().find(has_whole) {
+            Some(place) if place == kitchen.plate => Some(LastStep::Serve),
+            Some(place) => Some(LastStep::Plate(place)),
+            None => needs.items.iter().all(is_there).then_some(LastStep::Stack),
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 
 use ratatui::layout::Rect;
 
-use super::gaze;
+use super::gaze::GazeLoss;
 use super::paint::Painter;
 use super::regions::PanelAreas;
 use super::theme::TextRole;
@@ -21,7 +21,7 @@ use tomcom_core::kitchen::AspectId;
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_session::Session;
 use tomcom_session::history::belief_track::{self, BeliefSnapshot, SHOWN_S};
-use tomcom_session::settings::{GazeSource, WizardVisibility};
+use tomcom_session::settings::WizardVisibility;
 
 /// Least width, in columns, of a panel that shows each belief in one line.
 const ONE_LINE: u16 = 66;
@@ -90,13 +90,10 @@ impl Panel<'_> {
     }
 
     fn remark(&self) -> String {
-        let has_gaze = self.session.spec.participant.gaze != GazeSource::None && !self.beliefs.is_empty();
+        let loss = GazeLoss::now(self.session, self.now).filter(|_| !self.beliefs.is_empty());
         match self.of_standing(BeliefCorrectness::False).count() {
             _ if self.from > 0 => format!("{} above", self.from),
-            _ if has_gaze && !gaze::is_known(self.session, self.now) => match self.session.gaze.last {
-                Some((at, _)) => format!("without gaze since {}", self.session.trial_clock_at(at)),
-                None => "without gaze so far".to_string(),
-            },
+            _ if let Some(loss) = &loss => loss.words(self.now),
             0 => "estimated, not known".to_string(),
             number if are_by_cost(self.session) => format!("{number} false, costliest first"),
             number => format!("{number} false, oldest first"),

@@ -35,13 +35,18 @@ pub fn draw_presses(brush: &mut Painter, regions: &PanelAreas, session: &Session
     rows(brush, inside, session, model, is_press);
 }
 
-/// Draws the list of all events, the newest first.
+/// Draws the list of events, the newest first; without the presses where their own panel has them.
 pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     if regions.events.area() == 0 {
         return;
     }
-    let inside = brush.panel(regions.events, "Events", &hidden(model, "newest event first"));
-    rows(brush, inside, session, model, |_| true);
+    let (has_presses, title) = match regions.presses.area() {
+        0 => (true, "Events"),
+        _ => (false, "Other events"),
+    };
+    let inside = brush.panel(regions.events, title, &hidden(model, "newest event first"));
+    let is_listed = |what: &TimelineEvent| has_presses || !matches!(what, TimelineEvent::Press { .. });
+    rows(brush, inside, session, model, is_listed);
 }
 
 fn hidden(model: &ConsoleModel, newest: &str) -> String {
@@ -100,8 +105,14 @@ fn row(brush: &mut Painter, line: Rect, session: &Session, model: &ConsoleModel,
     let fits = |pressed: &str| width(&mark) + width(pressed) + 2 + width(&error.why) <= columns;
     let pressed: &str = if fits(&whole) { &whole } else { &error.press };
     let gap = if pressed.contains(':') { "; " } else { ": " };
-    let parts = [(mark.as_str(), TextRole::Strong), (pressed, TextRole::Text), (gap, TextRole::Quiet)];
-    let end = brush.parts(x, line.y, columns, &parts);
+    let end = brush.parts(
+        x,
+        line.y,
+        columns,
+        &[(&mark, TextRole::Strong), (pressed, TextRole::Text), (gap, TextRole::Quiet)],
+    );
+    let badge = brush.theme.badge(TextRole::Strong);
+    brush.text(x, line.y, 1, brush.theme.signs().error, badge);
     if fits(pressed) || line.height < 2 {
         brush.parts(end, line.y, (x + columns).saturating_sub(end), &[(&error.why, TextRole::Strong)]);
         return 1;

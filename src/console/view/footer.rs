@@ -15,7 +15,7 @@ use crate::console::key_action::{KeyAction, KeyBinding, KeyLayer, ManualAction, 
 use crate::console::mouse::ClickAction;
 use crate::console::panels::{is_away, opens_difference};
 use crate::console::possible::is_possible;
-use crate::console::text_columns::width;
+use crate::console::text_columns::{width, wrap_to};
 use tomcom_session::history::{event_words, wording};
 use tomcom_session::settings::ParticipantKind;
 use tomcom_session::{Session, TrialPhase};
@@ -164,7 +164,10 @@ pub fn message(brush: &mut Painter, regions: &PanelAreas, session: &Session, mod
         brush.text(area.x + 1, area.y, area.width - 1, &format!(" {} ", notice.text), style);
     } else if let Some(landmark) = model.playback.as_ref().and_then(Playback::stands_at) {
         let strong = brush.style(TextRole::Strong);
-        brush.text(area.x + 1, area.y, area.width - 1, &format!(" {landmark} "), strong);
+        let (columns, ellipsis) = (area.width.saturating_sub(3), brush.theme.signs().ellipsis);
+        for (row, line) in wrap_to(landmark, columns, area.height, ellipsis).iter().enumerate() {
+            brush.text(area.x + 2, area.y + row as u16, columns, line, strong);
+        }
     } else if session.robot.stopped && !session.robot.is_stopped_by_wizard() {
         let why = event_words::why_stopped(&session.robot.arm);
         let resume = model.keys.chord_for(&KeyAction::ResumeRobot).filter(|_| model.playback.is_none());

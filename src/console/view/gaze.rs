@@ -19,15 +19,17 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::calibration::{GOOD_DEG, GazeAccuracy, USABLE_DEG};
 use tomcom_core::gaze::{MIN_CONFIDENCE, nearest_location};
 use tomcom_core::kitchen::LocationId;
-use tomcom_session::Session;
 use tomcom_session::gaze_samples::faults;
+use tomcom_session::settings::GazeSource;
+use tomcom_session::tracker::DeviceConnection;
+use tomcom_session::{Session, TrialPhase};
 
 /// Time for which the last gaze sample is drawn, in seconds.
 const GAZE_S: f64 = 3.0;
 /// Longest time since the last gaze sample for which the participant counts as looking there now, in seconds.
 const NOW_S: f64 = 0.2;
 /// Time since the last usable gaze sample from which the gaze counts as unusable, in seconds.
-pub(super) const USABLE_S: f64 = 1.0;
+const USABLE_S: f64 = 1.0;
 /// Duration of the trail of gaze on the gaze map, in seconds.
 const TRAIL_S: f64 = 2.0;
 
@@ -39,8 +41,7 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     }
     if regions.screen_size == ScreenSize::Small {
         brush.parts(area.x, area.y, area.width, &[(" gaze     ", TextRole::Quiet)]);
-        let x = line(brush, area.x + 10, area.y, area.width.saturating_sub(11), session, model);
-        alarm(brush, x + 3, area.y, area.right().saturating_sub(x + 4), session, model);
+        line(brush, area.x + 10, area.y, area.width.saturating_sub(11), session, model, true);
         return;
     }
     let source = session.spec.participant.gaze.entry().name;
@@ -52,40 +53,64 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     let remark = format!("{source}{}", told.collect::<String>());
     let inside = brush.panel(area, "Gaze", &remark);
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
-    line(brush, x, inside.y, columns, session, model);
-    alarm(brush, x, inside.y + 1, columns, session, model);
+    line(brush, x, inside.y, columns, session, model, false);
+    if let Some(loss) = GazeLoss::now(session, model.now) {
+        let why = loss.why(session, model);
+        let share = 100.0 * session.gaze.unusable as f64 / session.gaze.samples.max(1) as f64;
+        let whole = format!("{why}; {share:.0} % of all samples");
+        let fits = loss.cause == GazeLossCause::Unusable && width(&whole) <= columns;
+        let told = if fits { whole } else { why };
+        brush.parts(x, inside.y + 1, columns, &[(&told, TextRole::Text)]);
+    } else if let Some(code) = pairing(session, model) {
+        brush.parts(x, inside.y + 1, columns, &[(&code, TextRole::Text)]);
+    }
 }
 
-fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) -> u16 {
-    let Some((at, sample)) = session.gaze.last else {
+/// The code that gaze senders at other computers need, while no gaze arrives.
+fn pairing(session: &Session, model: &ConsoleModel) -> Option<String> {
+    model.gaze_pairing.as_ref().and_then(|pairing| pairing.line(session, model.now))
+}
+
+/// Draws in one line where the participant looks, or how long no gaze is of use, and on request why.
+fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel, says_why: bool) {
+    let last = session.gaze.last.map(|(at, sample)| (at, place(session, [sample.x, sample.y])));
+    if let Some(loss) = GazeLoss::now(session, model.now) {
+        let lost = loss.words(model.now);
+        let why = if says_why { format!(": {}", loss.why(session, model)) } else { String::new() };
+        let last = last.map_or(String::new(), |(_, place)| format!("; last: {place}"));
+        brush.parts(x, y, columns, &[(&lost, TextRole::Alarm), (&why, TextRole::Text), (&last, TextRole::Quiet)]);
+        return;
+    }
+    let Some((at, place)) = last else {
         let words = if session.gaze.samples > 0 { "no usable gaze so far" } else { "no gaze sample so far" };
-        return brush.parts(x, y, columns, &[(words, TextRole::Quiet)]);
+        let code = pairing(session, model).filter(|_| says_why).map_or(String::new(), |code| format!("   {code}"));
+        brush.parts(x, y, columns, &[(words, TextRole::Quiet), (&code, TextRole::Text)]);
+        return;
     };
-    let sign = brush.theme.signs().gaze;
-    let age_s = session.age(at, model.now).as_secs_f64();
-    let (kitchen, at_m) = (&session.kitchen, [sample.x, sample.y]);
+    let age_s = model.now.secs_since(at);
+    if age_s > USABLE_S {
+        brush.parts(x, y, columns, &[("last: ", TextRole::Quiet), (&place, TextRole::Quiet)]);
+        return;
+    }
+    let age = if age_s < NOW_S { ", now".to_string() } else { format!(", {age_s:.1} s ago") };
+    let room = columns.saturating_sub(width(&age));
+    let sign = format!("{} ", brush.theme.signs().gaze);
+    let end = brush.parts(x, y, room, &[(&sign, TextRole::Gaze), (&place, TextRole::Gaze)]);
+    brush.parts(end, y, width(&age), &[(&age, TextRole::Quiet)]);
+}
+
+/// The place of a point of the display, in words.
+fn place(session: &Session, at_m: [f64; 2]) -> String {
+    let kitchen = &session.kitchen;
     let storage = kitchen.storages.iter().find(|storage| storage.display.distance_m(at_m, kitchen.display_m) == 0.0);
-    let place = match (nearest_location(kitchen, at_m), storage) {
+    match (nearest_location(kitchen, at_m), storage) {
         (Some((location, 0.0)), _) => kitchen.location(location).label(),
         (_, Some(storage)) => format!("storage of {}", storage.label),
         (Some((location, distance_m)), None) => {
             format!("{:.0} cm from {}", (distance_m * 100.0).max(1.0), kitchen.location(location).label())
         }
         (None, None) => "on the display".to_string(),
-    };
-    let age = if age_s < NOW_S { "now".to_string() } else { format!("{age_s:.1} s ago") };
-    brush.parts(
-        x,
-        y,
-        columns,
-        &[
-            (sign, TextRole::Gaze),
-            (" ", TextRole::Text),
-            (&place, TextRole::Gaze),
-            (", ", TextRole::Quiet),
-            (&age, TextRole::Quiet),
-        ],
-    )
+    }
 }
 
 /// Whether it is known where the participant looked lately.
@@ -93,34 +118,86 @@ pub(super) fn is_known(session: &Session, now: SessionTime) -> bool {
     session.gaze.last.is_some_and(|(at, _)| session.age(at, now).as_secs_f64() <= GAZE_S)
 }
 
-/// Whether a usable sample came a moment ago.
-pub(super) fn is_usable(session: &Session, now: SessionTime) -> bool {
-    session.gaze.last.is_some_and(|(at, _)| now.secs_since(at) <= USABLE_S)
+/// That no gaze is of use now, although it should be: the same for head line, gaze panel and beliefs.
+pub(super) struct GazeLoss {
+    cause: GazeLossCause,
+    /// Of the last usable sample, or when the tracker was lost.
+    since: Option<SessionTime>,
 }
 
-/// Draws why the gaze is of no use now; nothing while usable samples arrive.
-fn alarm(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
-    let gaze = &session.gaze;
-    let text = match session.gaze_hz(model.now) {
-        Some(_) if is_usable(session, model.now) => return,
-        Some(_) => {
-            let why = match gaze.latest_unusable {
-                Some(sample) if sample.confidence < MIN_CONFIDENCE => {
-                    format!("unusable: confidence {:.2} < {MIN_CONFIDENCE}", sample.confidence)
-                }
-                Some(sample) => format!("unusable: beside display ({:.1}, {:.1})", sample.x, sample.y),
-                None => "unusable now".to_string(),
-            };
-            let share = 100.0 * gaze.unusable as f64 / gaze.samples.max(1) as f64;
-            let whole = format!("{why}; {share:.0} % of all samples");
-            if width(&whole) <= columns { whole } else { why }
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum GazeLossCause {
+    NoTracker,
+    NoDisplayTags,
+    Unusable,
+    Silence,
+}
+
+impl GazeLoss {
+    /// `None` while usable samples arrive, and while none have to: before and after the trial, and in a pause of gaze that
+    /// comes from no tracker.
+    pub(super) fn now(session: &Session, now: SessionTime) -> Option<GazeLoss> {
+        let source = session.spec.participant.gaze;
+        if source == GazeSource::None {
+            return None;
         }
-        None => {
-            let pairing = model.gaze_pairing.as_ref().and_then(|pairing| pairing.line(session, model.now));
-            pairing.unwrap_or("no samples arrive now".to_string())
+        let last = session.gaze.last.map(|(at, _)| at);
+        let loss = |cause, since: Option<SessionTime>| Some(GazeLoss { cause, since });
+        match (&session.tracker.link, session.tracker.sees_display) {
+            (DeviceConnection::Lost { since, .. }, _) => return loss(GazeLossCause::NoTracker, last.or(Some(*since))),
+            (DeviceConnection::Unknown, _) if matches!(source, GazeSource::Pupil | GazeSource::Lsl) => {
+                return loss(GazeLossCause::NoTracker, last);
+            }
+            (DeviceConnection::Connected { .. }, Some(false)) => return loss(GazeLossCause::NoDisplayTags, last),
+            _ => {}
         }
-    };
-    brush.parts(x, y, columns, &[(&text, TextRole::Quiet)]);
+        let goes_on =
+            session.phase == TrialPhase::Paused && !matches!(source, GazeSource::Simulated | GazeSource::Mouse);
+        match session.gaze_hz(now) {
+            _ if last.is_some_and(|at| now.secs_since(at) <= USABLE_S) => None,
+            Some(_) => loss(GazeLossCause::Unusable, last),
+            None => loss(GazeLossCause::Silence, last).filter(|_| session.is_running() || goes_on),
+        }
+    }
+
+    fn lost(&self) -> &'static str {
+        match self.cause {
+            GazeLossCause::NoTracker => "no tracker",
+            GazeLossCause::NoDisplayTags => "no display tags",
+            GazeLossCause::Unusable => "gaze unusable",
+            GazeLossCause::Silence => "no gaze",
+        }
+    }
+
+    /// "no gaze for 26 s".
+    pub(super) fn words(&self, now: SessionTime) -> String {
+        let lost = self.lost();
+        self.since.map_or(lost.to_string(), |since| format!("{lost} for {:.0} s", now.secs_since(since)))
+    }
+
+    /// "NO GAZE 26 s".
+    pub(super) fn capitals(&self, now: SessionTime) -> String {
+        let lost = self.lost().to_uppercase();
+        self.since.map_or(lost.clone(), |since| format!("{lost} {:.0} s", now.secs_since(since)))
+    }
+
+    fn why(&self, session: &Session, model: &ConsoleModel) -> String {
+        match (self.cause, session.gaze.latest_unusable, &session.tracker.link) {
+            (GazeLossCause::NoTracker, _, DeviceConnection::Lost { reason, .. }) => reason.clone(),
+            (GazeLossCause::NoTracker, ..) => "it has not answered yet".to_string(),
+            (GazeLossCause::NoDisplayTags, ..) => "the tracker does not detect them".to_string(),
+            (GazeLossCause::Unusable, Some(sample), _) if sample.confidence < MIN_CONFIDENCE => {
+                format!("confidence {:.2} < {MIN_CONFIDENCE}", sample.confidence)
+            }
+            (GazeLossCause::Unusable, Some(sample), _) => format!("beside display ({:.1}, {:.1})", sample.x, sample.y),
+            (GazeLossCause::Unusable, None, _) => "faulty samples".to_string(),
+            (GazeLossCause::Silence, ..) => {
+                let is_closed = model.gaze_closed.is_some_and(|at| session.gaze.arrived.is_none_or(|last| last <= at));
+                let silent = if is_closed { "its sender closed the connection" } else { "no samples arrive" };
+                pairing(session, model).unwrap_or(silent.to_string())
+            }
+        }
+    }
 }
 
 /// Draws the gaze map: the wall display to scale with the trail of recent gaze, and the time since the last look at
@@ -143,7 +220,8 @@ pub fn draw_map(brush: &mut Painter, regions: &PanelAreas, session: &Session, mo
         }
     }
     let mut labels: Vec<Rect> = Vec::new();
-    let latest = session.gaze.last.map(|(at, sample)| sample.taken(at));
+    let latest = session.gaze.last.filter(|(at, _)| model.now.secs_since(*at) < NOW_S);
+    let latest = latest.map(|(at, sample)| sample.taken(at));
     for (index, location) in session.kitchen.locations.iter().enumerate() {
         let (x, y) = cell(location.display.centre());
         let seen = session.gaze.looked_at[index].map(|at| session.age(at, model.now).as_secs_f64());
@@ -155,7 +233,7 @@ pub fn draw_map(brush: &mut Painter, regions: &PanelAreas, session: &Session, mo
         };
         let (age, role) = match seen {
             // Only the place of the latest gaze sample is looked at now.
-            Some(age_s) if age_s < NOW_S && session.gaze.looked_at[index] == latest => {
+            Some(_) if latest.is_some() && session.gaze.looked_at[index] == latest => {
                 ("now".to_string(), TextRole::Gaze)
             }
             Some(age_s) if age_s < 1.0 => (format!("{age_s:.1}s"), TextRole::Text),
@@ -225,8 +303,9 @@ pub(super) fn mark(
     }
     let style = brush.style(TextRole::Gaze);
     let style = if age_s > 1.0 { style.remove_modifier(Modifier::BOLD).add_modifier(Modifier::DIM) } else { style };
-    let sign = brush.theme.signs().gaze;
-    let is_text = |symbol: &str| symbol.chars().any(|letter| letter.is_alphanumeric() || "[]".contains(letter));
+    let signs = brush.theme.signs();
+    let sign = signs.gaze;
+    let is_text = |symbol: &str| symbol != " " && !signs.rules.contains(&symbol) && !signs.frame.contains(&symbol);
     let has_text = |x: u16| brush.buffer.cell((x, y)).is_some_and(|cell| is_text(cell.symbol()));
     // A space between two words counts as text that the gaze sign must not cover.
     let covers_text = has_text(x) || (has_text(x.saturating_sub(1)) && has_text(x + 1));

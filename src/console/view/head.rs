@@ -2,7 +2,7 @@
 
 use ratatui::style::Style;
 
-use super::gaze::USABLE_S;
+use super::gaze::GazeLoss;
 use super::paint::Painter;
 use super::regions::{PanelAreas, ROOMY_COLUMNS};
 use super::theme::TextRole;
@@ -51,9 +51,7 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     let part = |text: String, style: Style, rank: u8| HeadPart { text, style, rank, is_close: false };
     // All phases of a trial take the same columns.
     let stage = format!("{:<STAGE$}", format!("{mark}{stage} "));
-    // On a small screen there is no room for the name of the program.
-    let name = (!is_small).then(|| part("tomcom".to_string(), strong, 8));
-    let mut parts: Vec<HeadPart> = name.into_iter().chain([part(stage, style, 0)]).collect();
+    let mut parts = vec![part(stage, style, 0)];
     match &model.coding {
         // A rater must not know in which condition the trial was.
         Some(coding) => parts.push(part(format!("rater {}", coding.name()), strong, 0)),
@@ -76,8 +74,9 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     if session.study_phase().is_none_or(|phase| phase.phase().has_trial()) {
         let clock = format!("{:>5}", session.trial_clock(model.now).to_string());
         parts.push(HeadPart { is_close: true, ..part(clock, strong, 0) });
-        // A replay shows the length of the recording elsewhere.
-        if !is_replayed || model.lesson.is_some() {
+        // A replay shows the length of the recording elsewhere; once the trial is over, nobody asks for it.
+        let is_over = matches!(session.phase, TrialPhase::Over(_) | TrialPhase::Closed);
+        if !is_over && (!is_replayed || model.lesson.is_some()) {
             let length = SessionTime::from_secs_f64(session.spec.trial.seconds);
             parts.push(part(format!("/ {length}"), quiet, 5));
         }
@@ -225,8 +224,8 @@ fn robot(session: &Session) -> (String, TextRole) {
     let (words, role) = match (session.robot.stopped, session.robot.held) {
         (true, _) => (mode.name(), TextRole::Alarm),
         (false, true) => ("ROBOT HELD", TextRole::Strong),
-        (false, false) if mode == SafetyMode::Safeguard => (mode.name(), TextRole::Strong),
-        // After the trial the arm stands.
+        // After the trial the arm rests.
+        (false, false) if mode == SafetyMode::Safeguard && !is_over => (mode.name(), TextRole::Strong),
         (false, false) if mode == SafetyMode::Reduced && !is_over => ("robot slow", TextRole::Strong),
         (false, false) => ("robot ok", TextRole::Text),
     };
@@ -268,26 +267,9 @@ fn gaze(session: &Session, model: &ConsoleModel) -> (String, TextRole) {
     if session.spec.participant.gaze == GazeSource::None {
         return ("no gaze".to_string(), TextRole::Quiet);
     }
-    match (&session.tracker.link, session.tracker.sees_display) {
-        (DeviceConnection::Lost { since, .. }, _) => {
-            return (format!("NO TRACKER {:.0} s", model.now.secs_since(*since)), TextRole::Alarm);
-        }
-        (DeviceConnection::Unknown, _)
-            if matches!(session.spec.participant.gaze, GazeSource::Pupil | GazeSource::Lsl) =>
-        {
-            return ("NO TRACKER".to_string(), TextRole::Alarm);
-        }
-        (DeviceConnection::Connected { .. }, Some(false)) => return ("NO DISPLAY TAGS".to_string(), TextRole::Alarm),
-        _ => {}
-    }
-    let usable = session.gaze.last.is_some_and(|(at, _)| model.now.secs_since(at) <= USABLE_S);
-    match (session.gaze_hz(model.now), session.gaze.arrived) {
-        (Some(_), _) if !usable => ("GAZE UNUSABLE".to_string(), TextRole::Alarm),
-        (Some(hz), _) => (format!("gaze {hz:>3.0} Hz"), TextRole::Text),
-        (None, Some(at)) if session.is_running() => {
-            (format!("NO GAZE {:.0} s", model.now.secs_since(at)), TextRole::Alarm)
-        }
-        (None, None) if session.is_running() => ("NO GAZE".to_string(), TextRole::Alarm),
-        _ => ("gaze idle".to_string(), TextRole::Quiet),
+    match (GazeLoss::now(session, model.now), session.gaze_hz(model.now)) {
+        (Some(loss), _) => (loss.capitals(model.now), TextRole::Alarm),
+        (None, Some(hz)) => (format!("gaze {hz:>3.0} Hz"), TextRole::Text),
+        (None, None) => ("gaze idle".to_string(), TextRole::Quiet),
     }
 }

@@ -51,6 +51,7 @@ fn legend(signs: &Glyphs) -> Vec<Line<'static>> {
         (signs.trail, "where the participant looked before"),
         (signs.rules[1], "content changed just now; colour: by whom"),
         (signs.changed, "changed, and the participant has not looked since"),
+        (signs.unknown, "changed, and no gaze tells whether it was seen"),
         (signs.rules[2], "place highlighted on the participant's display"),
         (signs.to, "robot's next press; trial or robot resumed"),
         (signs.bar_full, "probability of a belief; presses a signal saves"),
@@ -62,16 +63,17 @@ fn legend(signs: &Glyphs) -> Vec<Line<'static>> {
         (signs.served, "order served; item of an order that is there"),
         (signs.dash, "trial excluded from the analysis"),
         (signs.in_work, "item of an order in work; dish that was begun"),
-        (signs.missing, "item of an order that is missing"),
+        (signs.missing, "item of an order that is missing; step that is left"),
         ("+", "new order; further entries without room"),
         (signs.taken_back, "signal taken back; robot's press skipped"),
         (signs.by_hand, "manual intervention of the experimenter"),
         (signs.stopped, "robot stopped"),
         (signs.touched, "a person touched the robot's arm"),
+        ("alone", "the robot acts as long as the human does not"),
         (signs.pause, "trial paused; robot held"),
         ("*", "note that the wizard typed"),
         (signs.cursor, "selected row of a list"),
-        ("!", "keyboard focus was lost"),
+        ("!", "keyboard focus or eye tracker was lost"),
     ];
     meanings.map(|(sign, meaning)| Line::Sign(sign, meaning)).to_vec()
 }

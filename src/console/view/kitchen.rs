@@ -18,6 +18,7 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, LocationKind, OrderContent};
 use tomcom_session::Session;
 use tomcom_session::history::wording;
+use tomcom_session::order_needs::OrderNeeds;
 use tomcom_session::settings::Condition;
 
 /// Short text in place of the falsely believed value, where there is no room for that value.
@@ -51,13 +52,19 @@ pub fn draw(
         KeyLayer::Wizard => session.order_needs(),
         KeyLayer::Participant => Vec::new(),
     };
+    let plate = session.kitchen.plate;
+    let on_plate = &session.kitchen.content(session.state.content(plate)).items;
+    let is_for = |needs: &OrderNeeds| on_plate.iter().all(|&on| needs.items.iter().any(|needed| needed.item == on));
+    let is_known = model.layer == KeyLayer::Wizard;
+    let blocked = Some(plate).filter(|_| is_known && !on_plate.is_empty() && !needs.iter().any(is_for));
     let offered = offers::shown(session, model).and_then(|offer| offer.place(session));
     for spot in &plan.spots {
         match spot.thing {
             KitchenMapElement::Location(location) => {
                 let place = Place::new(session, model, location);
                 let thinks = offers::thinks(session, believed, location);
-                let place = Place { thinks, is_offered: offered == Some(location), ..place };
+                let is_blocked = blocked == Some(location);
+                let place = Place { thinks, is_offered: offered == Some(location), is_blocked, ..place };
                 match session.kitchen.location(location).kind {
                     LocationKind::Order => {
                         place.draw_order(brush, spot, needs.iter().find(|needs| needs.order == location));
@@ -84,7 +91,7 @@ fn frames(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &
     };
     let signs = brush.theme.signs();
     let there = match model.layer {
-        KeyLayer::Wizard => format!("{} there  {} in work  {} missing", signs.served, signs.in_work, signs.missing),
+        KeyLayer::Wizard => format!("{} there  {} in work  {} to do", signs.served, signs.in_work, signs.missing),
         KeyLayer::Participant => String::new(),
     };
     if regions.orders.area() > 0 {
@@ -172,6 +179,8 @@ pub(super) struct Place<'a> {
     fresh: Option<(f64, Option<Agent>)>,
     pub is_shown: bool,
     is_offered: bool,
+    /// Whether it is the plate, and holds what belongs to no order.
+    pub is_blocked: bool,
     /// What the participant falsely believes about the place, and what is true.
     pub thinks: Option<(String, String)>,
 }
@@ -189,8 +198,8 @@ impl<'a> Place<'a> {
         let age_s = session.age(at, model.now).as_secs_f64();
         let fresh = (at > SessionTime::ZERO && age_s < FRESH_S).then(|| (age_s, session.changed_by(at)));
         let is_shown = session.shown.as_ref().is_some_and(|shown| shown.location == Some(id));
-        let (is_offered, thinks) = (false, None);
-        Place { session, model, id, kitchen, content, is_empty, fresh, is_shown, is_offered, thinks }
+        let (is_offered, is_blocked, thinks) = (false, false, None);
+        Place { session, model, id, kitchen, content, is_empty, fresh, is_shown, is_offered, is_blocked, thinks }
     }
 
     fn draw(&self, brush: &mut Painter, spot: &KitchenMapBox) {
@@ -207,7 +216,11 @@ impl<'a> Place<'a> {
         let buttons = further_buttons(self.session, self.model, self.id);
         let free = below.height - (buttons.len() as u16).min(below.height - 1);
         let room = Rect { height: free, ..below };
-        let lines = self.contents(brush, room);
+        let mut lines = self.contents(brush, room);
+        if self.is_blocked && lines < room.height {
+            brush.parts(room.x, room.y + lines, room.width, &[("fits no order", TextRole::Strong)]);
+            lines += 1;
+        }
         match buttons.is_empty() {
             true => self.news_and_belief(brush, room, lines),
             false => {
@@ -260,9 +273,14 @@ impl<'a> Place<'a> {
         self.model.layer == KeyLayer::Wizard && self.session.is_unseen(self.id)
     }
 
-    /// What is told of an unseen change: while no usable gaze comes, nobody knows whether the participant saw it.
-    pub(super) fn unseen(&self) -> &'static str {
-        if gaze::is_known(self.session, self.model.now) { "unseen" } else { "gaze unknown" }
+    /// What is told of an unseen change, in words and as a sign: while no usable gaze comes, nobody knows whether the
+    /// participant saw it.
+    pub(super) fn unseen(&self, brush: &Painter) -> (&'static str, &'static str) {
+        let signs = brush.theme.signs();
+        match gaze::is_known(self.session, self.model.now) {
+            true => ("unseen", signs.changed),
+            false => ("gaze unknown", signs.unknown),
+        }
     }
 
     /// The key of this location in the active layer (wizard's or participant's keys).
@@ -298,10 +316,8 @@ impl<'a> Place<'a> {
         let (style, ellipsis) = (self.content_style(brush), brush.theme.signs().ellipsis);
         let mut lines = wrap(&self.content, room.width);
         if lines.len() > usize::from(room.height) {
-            lines = match room.height {
-                1 => vec![squeeze(&self.content, room.width, ellipsis)],
-                _ => vec![lines[0].clone(), squeeze(&lines[1..].join(" "), room.width, ellipsis)],
-            };
+            let rest = lines.split_off(usize::from(room.height) - 1).join(" ");
+            lines.push(squeeze(&rest, room.width, ellipsis));
         }
         for (row, line) in lines.iter().take(usize::from(room.height)).enumerate() {
             brush.text(room.x, room.y + row as u16, room.width, line, style);
@@ -357,17 +373,24 @@ impl<'a> Place<'a> {
             && wording::place(self.kitchen, Agent::Robot, button) == self.id
             && !self.session.robot.stopped
         {
-            news.push((format!("{}robot", signs.to), TextRole::Robot));
+            news.push((format!("{}robot comes", signs.to), TextRole::Robot));
         }
         // One sign says that the participant has not looked since the change.
-        let unseen = if self.is_unseen() { signs.changed } else { "" };
-        if let Some((age_s, by)) = self.fresh {
-            let words = by.map(|by| format!("{unseen}{} {age_s:.0} s ago", by.name()));
-            let words = words.filter(|words| news.is_empty() && width(words) <= room.width && lines < room.height);
-            news.push((words.unwrap_or(format!("{unseen}{age_s:.0}s")), agent_role(by)));
-        } else if !unseen.is_empty() {
-            let age = self.session.age(self.session.changed_at[self.id.index()], self.model.now);
-            news.push((format!("{unseen}{} {age}", self.unseen()), TextRole::Gaze));
+        let (words, sign) = self.unseen(brush);
+        let unseen = if self.is_unseen() { sign } else { "" };
+        match self.fresh {
+            // An age beside the robot would be read as its time of arrival.
+            _ if !news.is_empty() => news.extend((!unseen.is_empty()).then(|| (unseen.to_string(), TextRole::Gaze))),
+            Some((age_s, by)) => {
+                let words = by.map(|by| format!("{unseen}{} {age_s:.0} s ago", by.name()));
+                let words = words.filter(|words| width(words) <= room.width && lines < room.height);
+                news.push((words.unwrap_or(format!("{unseen}{age_s:.0}s")), agent_role(by)));
+            }
+            None if !unseen.is_empty() => {
+                let age = self.session.age(self.session.changed_at[self.id.index()], self.model.now);
+                news.push((format!("{}{words} {age}", signs.changed), TextRole::Gaze));
+            }
+            None => {}
         }
         let has_news = !news.is_empty();
         let y = room.y + lines.min(room.height - 1);

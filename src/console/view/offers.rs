@@ -289,8 +289,10 @@ pub fn draw_signals(brush: &mut Painter, regions: &PanelAreas, session: &Session
     let Some(advice) = &session.advice else {
         return quietly(brush, inside, why_no_list(session));
     };
+    // An open offer holds still while the benefit of its signal changes.
+    let offered = session.offers.open().and_then(|offer| offer.signal());
     let (worth_it, not_worth_it): (Vec<&SignalOption>, Vec<&SignalOption>) =
-        advice.options.iter().partition(|option| option.net > 0.0);
+        advice.options.iter().partition(|option| option.net > 0.0 || offered == Some(&option.signal));
     // The line with the cost of a signal is always visible; if there is no room, signals above it are left out.
     let above = inside.height.saturating_sub(1).min(worth_it.len() as u16);
     for (row, option) in worth_it.into_iter().take(usize::from(above)).enumerate() {

@@ -11,6 +11,7 @@ use crate::console::chord::KeyChord;
 use crate::console::lists::RecordingPicker;
 use crate::console::mouse::{ClickAction, ClickTarget};
 use crate::console::text_columns::{fit_end, width};
+use tomcom_core::base::text::count;
 
 /// Rows around the list of recordings: frame, search line, headings, key hints.
 const AROUND: u16 = 7;
@@ -39,14 +40,18 @@ fn draw(brush: &mut Painter, picker: &RecordingPicker) {
     let shown = ShownColumns::that_fit(picker, screen.width.saturating_sub(BESIDE));
     let wanted = shown.needed() + BESIDE;
     let hint = width(&picker.title) + 4;
-    let size = (wanted.max(hint).max(64).min(screen.width), (picker.rows.len() as u16 + AROUND).min(screen.height));
+    let size = (
+        wanted.max(hint).max(64).min(screen.width),
+        (picker.reading.unwrap_or(picker.rows.len()) as u16 + AROUND).min(screen.height),
+    );
     let inside = open(brush, screen, size, &picker.title, "");
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     let left = picker.left();
     let typed = format!("{}_", picker.cursor.filter);
     brush.parts(x, inside.y, columns, &[("type to filter: ", TextRole::Quiet), (&typed, TextRole::Strong)]);
     let quiet = brush.style(TextRole::Quiet);
-    brush.text_right(x + columns, inside.y, 16, &format!("{} of {}", left.len(), picker.rows.len()), quiet);
+    let found = picker.reading.map_or(format!("{} of {}", left.len(), picker.rows.len()), |_| String::new());
+    brush.text_right(x + columns, inside.y, 16, &found, quiet);
     let headings = Rect { x: x + 2, y: inside.y + 2, width: columns.saturating_sub(2), height: 1 };
     shown.row(brush, headings, &picker.headings, TextRole::Quiet);
     let list = Rect { x, y: inside.y + 3, width: columns, height: inside.height.saturating_sub(5) };
@@ -62,7 +67,11 @@ fn draw(brush: &mut Painter, picker: &RecordingPicker) {
         brush.target(Rect { y, height: 1, ..list }, ClickAction::Row(first + line));
     }
     if left.is_empty() {
-        brush.text(list.x, list.y, list.width, "no recording matches; bksp deletes a letter", quiet);
+        let words = match picker.reading {
+            Some(number) => format!("reading {}", count(number as u64, "recording", "recordings")),
+            None => "no recording matches; bksp deletes a letter".to_string(),
+        };
+        brush.text(list.x, list.y, list.width, &words, quiet);
     }
     let [enter, esc] = [KeyCode::Enter, KeyCode::Esc].map(|code| Some(KeyChord::plain(code)));
     let hints = [("up/down", "select", None), ("enter", picker.does, enter), ("esc", "back", esc)];

@@ -70,7 +70,7 @@ const FRAME: u16 = 2;
 const TIMELINE_ROWS: u16 = 6;
 const LOW_TIMELINE_ROWS: u16 = 4;
 /// Least height of a medium terminal's panels, in rows, for a row of offers in the timeline.
-const OFFERS_FROM: u16 = 34;
+const OFFERS_FROM: u16 = 33;
 /// Height of the list of signals on large terminals, in rows.
 const RECOMMENDATION_ROWS: u16 = 8;
 /// Heights of the panels of display, gaze and robot, in rows.
@@ -103,6 +103,8 @@ struct LineRows {
     codebook: Option<[u16; 2]>,
     comparison: Option<u16>,
     scrubs: bool,
+    /// What a replay says of errors and signals is longer than what a session, a training or a rater is told.
+    messages: u16,
 }
 
 impl PanelAreas {
@@ -117,7 +119,9 @@ impl PanelAreas {
             [compact, coding::full(keys, kitchen, CODEBOOK_COLUMNS).len() as u16]
         });
         let scrubs = model.playback.is_some();
-        let lines = LineRows { codebook, comparison: compared, scrubs, ..LineRows::for_kitchen(&session.kitchen) };
+        let messages = if scrubs && codebook.is_none() && model.lesson.is_none() { 2 } else { 1 };
+        let kitchen = LineRows::for_kitchen(&session.kitchen);
+        let lines = LineRows { codebook, comparison: compared, scrubs, messages, ..kitchen };
         let regions = PanelAreas::with(size, visibility(session, model), model.alone, lines);
         if model.lesson.is_some() { regions.teaching() } else { regions }
     }
@@ -161,7 +165,7 @@ impl PanelAreas {
         let offer_rows = if size.0 < OFFER_COLUMNS { 2 } else { 1 };
         let (offer, rest) = top(rest, if visibility == WizardVisibility::Recommendation { offer_rows } else { 0 });
         let (rest, footer) = bottom(rest, 1);
-        let (rest, message) = bottom(rest, 1);
+        let (rest, message) = bottom(rest, if screen_size > ScreenSize::Small { lines.messages } else { 1 });
         let (rest, scrub) = bottom(rest, u16::from(lines.scrubs));
         let blank = Rect::default();
         let (rest, codebook, errors) = match lines.codebook {
@@ -372,7 +376,14 @@ impl PanelAreas {
 impl LineRows {
     fn for_kitchen(kitchen: &Kitchen) -> LineRows {
         let orders = kitchen.orders.len() as u16;
-        LineRows { orders, kitchen: KitchenMap::rows(kitchen), codebook: None, comparison: None, scrubs: false }
+        LineRows {
+            orders,
+            kitchen: KitchenMap::rows(kitchen),
+            codebook: None,
+            comparison: None,
+            scrubs: false,
+            messages: 1,
+        }
     }
 
     /// Divides a column among orders, kitchen map and last presses. The last presses get what the others do not need:

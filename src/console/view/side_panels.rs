@@ -1,19 +1,21 @@
 //! Panels of the robot (ongoing press, progress of the arm, reason for being idle, what it holds), of the participant's
 //! display (the signal, its content and its remaining time), and of a wizard training (task, then feedback).
 
+use ratatui::layout::Rect;
+
 use super::paint::Painter;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
 use crate::console::console_model::{ConsoleModel, NoticeLevel, TrainingFeedback, TrainingPanel};
 use crate::console::key_action::{KeyAction, ManualAction};
-use crate::console::text_columns::{width, wrap};
+use crate::console::text_columns::{width, wrap, wrap_to};
 use tomcom_core::base::text::count;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::kitchen::Agent;
 use tomcom_core::robot::{SLOWS_M, SafetyMode};
 use tomcom_session::history::{event_words, wording};
-use tomcom_session::{Session, ShownSignal, TrialPhase, proposals};
+use tomcom_session::{Event, Session, ShownSignal, TimelineEvent, TrialPhase, proposals};
 
 /// What the console says while the arm is slow since a hand is near.
 const SLOW: &str = "slow: hand near";
@@ -29,14 +31,13 @@ pub fn draw_robot(brush: &mut Painter, regions: &PanelAreas, session: &Session, 
     if regions.screen_size == ScreenSize::Small {
         brush.parts(area.x, area.y, area.width, &[(" robot    ", TextRole::Quiet)]);
         let (mut columns, mode) = (area.width.saturating_sub(11), session.robot.arm.mode);
-        // Other modes than this one stand in the head line.
-        if mode == SafetyMode::Reduced && !session.robot.stopped {
-            // Where the robot goes has priority over why it is slow.
-            let name = if columns < 44 { " slow".to_string() } else { format!(" {}", mode_words(mode)) };
-            columns = columns.saturating_sub(name.len() as u16);
-            brush.parts(area.x + 10 + columns, area.y, name.len() as u16, &[(&name, mode_role(mode))]);
+        // All modes stand in the head line; where there is room, this one says why.
+        if mode == SafetyMode::Reduced && !session.robot.stopped && columns >= 44 {
+            let name = format!(" {}", mode_words(mode));
+            columns = columns.saturating_sub(width(&name));
+            brush.parts(area.x + 10 + columns, area.y, width(&name), &[(&name, mode_role(mode))]);
         }
-        robot_line(brush, area.x + 10, area.y, columns, session, model);
+        robot_line(brush, Rect { x: area.x + 10, width: columns, ..area }, session, model);
         return;
     }
     let is_arm = session.spec.robot.arm.has_joints();
@@ -49,21 +50,23 @@ pub fn draw_robot(brush: &mut Painter, regions: &PanelAreas, session: &Session, 
     let mode = session.robot.arm.mode;
     let name = if is_arm && !mode.is_stopped() { mode_words(mode) } else { "" };
     let between = if name.is_empty() || remark.is_empty() { "" } else { "  " };
-    let title = if is_arm { "UR5" } else { "Robot" };
+    let title = "Robot";
     let parts = [(name, mode_role(mode)), (between, TextRole::Quiet), (&remark, TextRole::Quiet)];
     // The arm's mode comes before the hint where there is room for one of them.
     let columns = [title, name, between, &remark].map(width).iter().sum::<u16>();
     let is_crowded = !name.is_empty() && columns + 6 >= area.width;
     let inside = brush.panel_with(area, title, if is_crowded { &parts[..1] } else { &parts });
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
-    robot_line(brush, x, inside.y, columns, session, model);
-    holds(brush, x, inside.y + 1, columns, session);
-    arm(brush, x, inside.y + 2, columns, session, model.now);
+    let rows = robot_line(brush, Rect { x, width: columns, ..inside }, session, model);
+    holds(brush, x, inside.y + rows, columns, session);
+    if rows == 1 {
+        arm(brush, x, inside.y + 2, columns, session, model.now);
+    }
 }
 
 fn holds(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session) {
     let held = session.kitchen.content_label(session.state, session.kitchen.hands[Agent::Robot.index()]);
-    let presses = count(u64::from(session.presses[Agent::Robot.index()]), "press", "presses");
+    let presses = count(u64::from(session.presses[Agent::Robot.index()]), "press made", "presses made");
     brush.parts(x, y, columns, &[("holds ", TextRole::Quiet), (held, TextRole::Text)]);
     let quiet = brush.style(TextRole::Quiet);
     brush.text_right(x + columns, y, columns / 2, &presses, quiet);
@@ -72,10 +75,14 @@ fn holds(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session) {
 /// Draws what the arm does, how far the hand is from it, and the force. While the arm stands no samples come: the last one
 /// then tells nothing of the present.
 fn arm(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, now: SessionTime) {
+    if session.robot.stopped {
+        brush.parts(x, y, columns, &[(&stop_reason(session), TextRole::Alarm)]);
+        return;
+    }
     let Some((at, sample)) = session.robot.arm.last else { return };
-    let is_over = matches!(session.phase, TrialPhase::Over(_) | TrialPhase::Closed);
-    if session.robot.stopped || is_over || session.age(at, now).as_secs_f64() > FRESH_S {
-        let words = if session.robot.stopped || is_over { "stopped" } else { "stands" };
+    if !session.is_running() || session.age(at, now).as_secs_f64() > FRESH_S {
+        let is_over = matches!(session.phase, TrialPhase::Over(_) | TrialPhase::Closed);
+        let words = if is_over { "stopped" } else { "stands" };
         brush.parts(x, y, columns, &[(words, TextRole::Text)]);
         return;
     }
@@ -96,20 +103,40 @@ fn arm(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, now
     brush.parts(x, y, columns, &parts);
 }
 
-/// Draws the stop of the robot with its reason and the key that resumes it.
-fn stopped(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
-    let label = match session.robot.arm.unready() {
-        Some((stage, _)) if !session.robot.arm.mode.is_stopped() => {
+/// Why the robot is stopped: until it is resumed, whatever is said elsewhere meanwhile.
+fn stop_reason(session: &Session) -> String {
+    if let Some((stage, found)) = session.robot.arm.unready().filter(|_| !session.robot.arm.mode.is_stopped()) {
+        return event_words::arm_stage(stage, found);
+    }
+    let stops = session.timeline.iter().rev().find_map(|entry| match &entry.what {
+        TimelineEvent::Noted(Event::RobotSafety { mode, force_n, joint }) if mode.has_stopped_itself() => {
+            Some(event_words::stop_cause(*force_n, *joint))
+        }
+        _ => None,
+    });
+    match (session.robot.is_stopped_by_wizard(), stops) {
+        (true, _) => "stopped by the wizard".to_string(),
+        (false, stops) => stops.flatten().unwrap_or("the arm stopped itself".to_string()),
+    }
+}
+
+/// Draws the stop of the robot and the key that resumes it; the force of a contact where there is one line, whose head line
+/// names the stop.
+fn stopped(brush: &mut Painter, line: Rect, session: &Session, model: &ConsoleModel) {
+    let arm = &session.robot.arm;
+    let contact_n = arm.stopped_by_n.filter(|_| line.height == 1 && !session.robot.is_stopped_by_wizard());
+    let label = match (arm.unready(), contact_n) {
+        (Some((stage, _)), _) if !arm.mode.is_stopped() => {
             format!(" ARM: {} ", event_words::arm_stage(stage, "").to_uppercase())
         }
+        (_, Some(force_n)) => format!(" contact, {force_n:.0} N "),
         _ => format!(" {} ", session.robot.safety_mode().name()),
     };
     let key = model.keys.chord_for(&KeyAction::ResumeRobot).filter(|_| session.phase != TrialPhase::Closed);
     let resume = key.map(|key| format!(" {key} resume")).unwrap_or_default();
-    let force = session.robot.arm.stopped_by_n.map(|force_n| format!(" {force_n:.0} N")).unwrap_or_default();
     let badge = brush.theme.badge(TextRole::Alarm);
-    let end = brush.text(x, y, columns, &label, badge);
-    brush.parts(end, y, (x + columns).saturating_sub(end), &[(&force, TextRole::Alarm), (&resume, TextRole::Text)]);
+    let end = brush.text(line.x, line.y, line.width, &label, badge);
+    brush.parts(end, line.y, line.right().saturating_sub(end), &[(&resume, TextRole::Text)]);
 }
 
 /// A safety mode in words; the modes in which the arm stands keep their names.
@@ -125,52 +152,73 @@ fn mode_role(mode: SafetyMode) -> TextRole {
     }
 }
 
-fn robot_line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
+/// Draws what the robot does or waits for; returns the number of lines, two where an area of several lines has to name
+/// many buttons.
+fn robot_line(brush: &mut Painter, area: Rect, session: &Session, model: &ConsoleModel) -> u16 {
+    let Rect { x, y, width: columns, .. } = area;
     if session.robot.stopped {
-        stopped(brush, x, y, columns, session, model);
-        return;
+        stopped(brush, area, session, model);
+        return 1;
     }
     if let Some((stage, _)) = session.robot.arm.unready().filter(|_| session.phase == TrialPhase::Ready) {
         let key = model.keys.chord_for(&KeyAction::Manual(ManualAction::ConfirmArm)).filter(|_| stage.asks().is_some());
         let next = key.map(|key| format!("  {key} goes on")).unwrap_or_default();
         let words = event_words::arm_stage(stage, "");
         brush.parts(x, y, columns, &[(&words, TextRole::Strong), (&next, TextRole::Quiet)]);
-        return;
+        return 1;
     }
     let (x, columns) = if session.robot.held { held(brush, x, y, columns, model) } else { (x, columns) };
     if matches!(session.phase, TrialPhase::Over(_) | TrialPhase::Closed) {
         brush.parts(x, y, columns, &[("stopped: the trial is over", TextRole::Quiet)]);
-        return;
+        return 1;
     }
     let Some((button, since, until)) = session.robot.intention else {
-        let why = match &session.robot.idle {
-            _ if session.robot.held => String::new(),
+        let ways = match &session.robot.idle {
+            _ if session.robot.held => Vec::new(),
             Some((reason, waits_for)) => {
                 let human = &session.kitchen.buttons[Agent::Human.index()];
                 let names: Vec<&str> = waits_for.iter().map(|button| human[button.index()].name.as_str()).collect();
-                wording::idle(*reason, &names, session.robot.gave_up, usize::from(columns))
+                wording::idle(*reason, &names, session.robot.gave_up)
             }
-            None => "no press planned".to_string(),
+            None => vec!["no press planned".to_string()],
         };
-        brush.parts(x, y, columns, &[(&why, TextRole::Quiet)]);
-        return;
+        let (Some(least), whole) = (ways.last(), ways.iter().find(|words| width(words) <= columns)) else { return 1 };
+        let rows = match whole {
+            Some(words) => vec![words.clone()],
+            None if area.height > 1 => wrap_to(least, columns, 2, brush.theme.signs().ellipsis),
+            None => vec![least.clone()],
+        };
+        for (row, words) in rows.iter().enumerate() {
+            brush.parts(x, y + row as u16, columns, &[(words, TextRole::Quiet)]);
+        }
+        return rows.len() as u16;
     };
-    let now = if session.is_running() { model.now } else { session.paused_at };
     let whole_s = until.secs_since(since).max(1e-3);
-    let left_s = until.secs_since(now);
+    let left_s = until.secs_since(model.now);
     let label = format!("{} {}", brush.theme.signs().to, wording::button(&session.kitchen, Agent::Robot, button));
-    let by = match session.robot.initiative {
+    // The human's next press ends the robot's initiative.
+    let is_human = |what: &TimelineEvent| matches!(what, TimelineEvent::Press { agent: Agent::Human, .. });
+    let mut lately = session.timeline.iter().rev().take_while(|entry| entry.time >= since);
+    let is_alone = session.robot.initiative && !lately.any(|entry| is_human(&entry.what));
+    let by = match is_alone {
         _ if session.robot.driven_to.is_some() => " by wizard",
         true if width(&label) + 30 <= columns => " alone: nobody presses",
         true => " alone",
         false => "",
     };
+    let kitchen = &session.kitchen;
+    let has_use = kitchen.press(session.state, &kitchen.true_recipes(), Agent::Robot, button).is_some();
     if session.robot.arm.mode == SafetyMode::Safeguard {
         // The time that is left is unknown until the hand is gone.
         let parts = [(label.as_str(), TextRole::Robot), (by, TextRole::Signal), (": hand in the way", TextRole::Text)];
         let fits = parts.iter().map(|(text, _)| width(text)).sum::<u16>() <= columns;
         brush.parts(x, y, columns, if fits { &parts } else { &[("hand in the way", TextRole::Text)] });
-        return;
+        return 1;
+    }
+    if !session.is_running() || !has_use {
+        let words = if has_use { ": paused" } else { ": of no use now" };
+        brush.parts(x, y, columns, &[(&label, TextRole::Robot), (by, TextRole::Signal), (words, TextRole::Text)]);
+        return 1;
     }
     // How long the arm takes is known neither while it is held nor once the expected time is over.
     let left = match left_s {
@@ -180,13 +228,14 @@ fn robot_line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Sessi
     };
     if left.is_empty() {
         brush.parts(x, y, columns, &[(&label, TextRole::Robot), (by, TextRole::Signal)]);
-        return;
+        return 1;
     }
     // The name of the button has priority over the length of the bar.
     let bar = 8.min(columns / 4).min(columns.saturating_sub(width(&label) + width(by) + 7));
     brush.parts(x, y, columns.saturating_sub(bar + 7), &[(&label, TextRole::Robot), (by, TextRole::Signal)]);
     let at = brush.bar(x + columns - bar - 6, y, bar, 1.0 - left_s / whole_s, TextRole::Robot);
     brush.parts(at, y, 6, &[(&left, TextRole::Text)]);
+    1
 }
 
 fn release(model: &ConsoleModel) -> String {

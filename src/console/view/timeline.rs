@@ -20,6 +20,7 @@ use tomcom_core::kitchen::Agent;
 use tomcom_session::probes::ProbeEvent;
 use tomcom_session::replay::ReplayLandmark;
 use tomcom_session::settings::WizardVisibility;
+use tomcom_session::tracker::TrackerEvent;
 use tomcom_session::{Event, Session, TimelineEntry, TimelineEvent, TrialPhase, offers};
 
 /// Time that one terminal column of the timeline stands for, in seconds.
@@ -96,7 +97,8 @@ fn offers(brush: &mut Painter, row: Rect, session: &Session, model: &ConsoleMode
     let open = session.offers.unclosed().map(|offer| (offer, model.now, false));
     let signs = brush.theme.signs();
     let is_seen = |offer: &Offer| offer.advice.visible && offer.opened <= model.now;
-    for (offer, end, is_closed) in closed.chain(open).filter(|(offer, ..)| is_seen(offer)) {
+    let mut seen = closed.chain(open).filter(|(offer, ..)| is_seen(offer)).peekable();
+    while let Some((offer, end, is_closed)) = seen.next() {
         let (from, to) = (column(offer.opened), column(end.min(model.now)));
         if to < i64::from(row.x) || from >= i64::from(row.right()) {
             continue;
@@ -114,11 +116,12 @@ fn offers(brush: &mut Painter, row: Rect, session: &Session, model: &ConsoleMode
             };
             brush.text(at as u16, row.y, 1, sign, style);
         }
-        // While the key still takes a closed offer, the offer is not missed. The next offer is drawn over the word.
+        // While the key still takes a closed offer, the offer is not missed. A part of the word would be read as a key.
         let is_missed = is_closed && used.is_none() && session.age(end, model.now) > TAKEN_AFTER;
         // Right after the close the word stands over the end of the line.
         let after = (to + 2).min(i64::from(row.right().saturating_sub(width(MISSED))));
-        if is_missed && after >= i64::from(row.x) && after < i64::from(row.right()) {
+        let next = seen.peek().map_or(row.right().into(), |(next, ..)| column(next.opened));
+        if is_missed && after >= i64::from(row.x) && after + i64::from(width(MISSED)) <= next {
             brush.text(after as u16, row.y, row.right() - after as u16, MISSED, style);
         }
     }
@@ -166,7 +169,9 @@ fn place(brush: &mut Painter, plot: Rect, marks: &[Mark]) {
         for mark in marks.iter().filter(|mark| rank(mark) == wanted) {
             let is_free = |x: &u16| brush.buffer.cell((*x, mark.y)).is_some_and(|cell| cell.symbol() == " ");
             let free = (plot.x..=mark.x).rev().find(is_free);
-            let style = brush.style(mark.role);
+            // Errors are told from orders and notes at a glance.
+            let is_error = mark.sign == signs.error;
+            let style = if is_error { brush.theme.badge(mark.role) } else { brush.style(mark.role) };
             match free {
                 Some(x) if wanted == 0 || x == mark.x => {
                     brush.text(x, mark.y, 1, &mark.sign, style);
@@ -254,7 +259,8 @@ fn mark(
             Event::Probe(ProbeEvent::Ended { .. }) => (5, signs.to.to_string(), TextRole::Strong),
             Event::TrialExcluded { .. } => (5, signs.dash.to_string(), TextRole::Signal),
             Event::TrialIncluded => (5, signs.served.to_string(), TextRole::Signal),
-            Event::FocusLost => (5, "!".to_string(), TextRole::Alarm),
+            Event::FocusLost | Event::Tracker(TrackerEvent::Lost { .. }) => (5, "!".to_string(), TextRole::Alarm),
+            Event::Tracker(TrackerEvent::Connected { .. }) => (5, signs.to.to_string(), TextRole::Gaze),
             Event::Marker { note, .. } => {
                 let notes = &session.spec.console.notes;
                 let number = notes.iter().position(|known| known == note).map(|index| (index + 1).to_string());

@@ -185,7 +185,7 @@ pub fn robot_does(session: &Session) -> String {
         Some((reason, buttons)) => {
             let names: Vec<&str> =
                 buttons.iter().map(|&button| kitchen.button(Agent::Human, button).name.as_str()).collect();
-            wording::idle(*reason, &names, robot.gave_up, usize::MAX)
+            wording::idle(*reason, &names, robot.gave_up).swap_remove(0)
         }
         None => String::new(),
     }

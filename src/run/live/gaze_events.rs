@@ -77,8 +77,8 @@ impl GazeInput {
                 self.dropped.overrun += count;
                 return None;
             }
-            // Senders that are not trackers are counted at the console only, not in the log.
-            TrackerMessage::Rejected { .. } => return None,
+            // Senders that are no trackers, or leave, are told at the console only, not in the log.
+            TrackerMessage::Rejected { .. } | TrackerMessage::Closed => return None,
             // Every sender's stamps are judged; what is the same for the next sender is no news.
             TrackerMessage::Stamps(fault) if fault == self.stamp_fault => return None,
             TrackerMessage::Stamps(fault) => {

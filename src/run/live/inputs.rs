@@ -140,6 +140,10 @@ impl Live {
             self.model.reject_sender(RejectedGaze { told, remedy: why.remedy().to_string() }, *senders);
             self.dirty = true;
         }
+        if news == TrackerMessage::Closed {
+            self.model.gaze_closed = Some(self.clock.now());
+            self.dirty = true;
+        }
         if let Some(complaint) = self.gaze.complaint(&news) {
             self.model.warn(complaint);
             self.dirty = true;

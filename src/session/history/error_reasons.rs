@@ -18,7 +18,8 @@ pub struct ExplainedError {
     pub press: String,
     /// "order 1 needs tuna", "the hand is empty".
     pub why: String,
-    /// The reason with cost and cause, which raters are not shown.
+    /// The cause, if it is known, the reason and the cost: "cause: slip; no order needs tuna; costs 2 presses". Raters are
+    /// not shown it.
     pub with_cause: String,
 }
 
@@ -37,7 +38,11 @@ impl ExplainedError {
             ExplainedError {
                 time: press.time,
                 press: wording::button(&session.kitchen, Agent::Human, press.button),
-                with_cause: format!("{why}; {}", event_words::cost(&session.kitchen, press)),
+                with_cause: event_words::cause(&session.kitchen, press)
+                    .into_iter()
+                    .chain([why.clone(), event_words::cost(press)])
+                    .collect::<Vec<_>>()
+                    .join("; "),
                 why,
             }
         });
@@ -259,7 +264,7 @@ fn stacked(
     let Some(nearest) = nearest else { return Some(format!("no order needs {}", word(kitchen, held))) };
     let wrong: Vec<ContentId> = put.iter().copied().filter(|&item| !has(nearest, item)).collect();
     if wrong.is_empty() {
-        return Some(format!("it fits no order with {}", word(kitchen, below)));
+        return Some(format!("{} fits no order with {}", word(kitchen, held), word(kitchen, below)));
     }
     Some(instead(kitchen, nearest, &wrong))
 }

@@ -73,7 +73,7 @@ pub fn line(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<St
         }
         Event::RobotAborts { button, reason } => format!("robot gives up {}: {}", said(button), reason.words()),
         Event::RobotIdles { reason, waits_for } => {
-            format!("robot {}", wording::idle(*reason, waits_for, None, usize::MAX))
+            format!("robot {}", wording::idle(*reason, waits_for, None).swap_remove(0))
         }
         // Changes between normal and reduced speed get no line: the arm slows near the hand and speeds up again too
         // often.
@@ -156,7 +156,7 @@ fn verdict(stamped: &TimestampedEvent, follower: &SessionFollower) -> String {
     match (&stamped.event, judged) {
         (Event::Press { agent: Agent::Human, .. }, None) => " (does not count)".to_string(),
         (_, Some(press)) if press.verdict.error => {
-            format!(" (error, {})", cost(&follower.session.kitchen, press))
+            format!(" (error, {})", verdict_words(&follower.session.kitchen, press))
         }
         (_, Some(press)) if press.verdict.race => " (race with the robot)".to_string(),
         _ => String::new(),
@@ -292,6 +292,7 @@ fn noted(event: &Event) -> (&'static str, String) {
         Event::RobotDriven { button, .. } => ("wizard", format!("chose the robot's press: {}", said(button))),
         Event::KitchenCorrected { location, .. } => ("wizard", format!("corrected {}", said(location))),
         Event::Probe(event) => ("", probe(event)),
+        Event::Tracker(event) => ("gaze", tracker(event).unwrap_or_default()),
         Event::TrialExcluded { reason } => ("trial", format!("excluded: {reason}")),
         Event::TrialIncluded => ("trial", "no longer excluded".to_string()),
         Event::FocusLost => ("console", "lost the keyboard focus".to_string()),
@@ -335,30 +336,42 @@ pub fn trial(phase: TrialPhase) -> &'static str {
     }
 }
 
+/// "protective stop: contact with a person, 98 N".
 pub fn arm_stopped(mode: SafetyMode, force_n: Option<f64>, joint: Option<u8>) -> String {
     let mode = mode.name().to_lowercase();
+    stop_cause(force_n, joint).map_or(mode.clone(), |cause| format!("{mode}: {cause}"))
+}
+
+/// Why the arm stopped itself, as far as that is recorded.
+pub fn stop_cause(force_n: Option<f64>, joint: Option<u8>) -> Option<String> {
     match (force_n, joint) {
-        (Some(force_n), _) => format!("{mode}: contact with a person, {force_n:.0} N"),
-        (None, Some(joint)) => format!("{mode}: joint {joint} does not follow its command"),
-        (None, None) => mode,
+        (Some(force_n), _) => Some(format!("contact with a person, {force_n:.0} N")),
+        (None, Some(joint)) => Some(format!("joint {joint} does not follow its command")),
+        (None, None) => None,
     }
 }
 
 /// The cost of the press compared with the human's best press, and the cause where it is known: "costs 2 presses; cause:
 /// false belief about robot hand".
-pub(super) fn cost(kitchen: &Kitchen, press: &JudgedPress) -> String {
-    let because = match press.cause {
-        None => String::new(),
-        Some(ErrorCause::Slip) => "; cause: slip".to_string(),
-        Some(ErrorCause::Planning) => "; cause: planning error".to_string(),
-        Some(ErrorCause::Belief { target, with: None, .. }) => {
-            format!("; cause: false belief about {}", target.label(kitchen))
+fn verdict_words(kitchen: &Kitchen, press: &JudgedPress) -> String {
+    [Some(cost(press)), cause(kitchen, press)].into_iter().flatten().collect::<Vec<_>>().join("; ")
+}
+
+pub(super) fn cost(press: &JudgedPress) -> String {
+    format!("costs {}", count(press.verdict.excess.unsigned_abs(), "press", "presses"))
+}
+
+pub(super) fn cause(kitchen: &Kitchen, press: &JudgedPress) -> Option<String> {
+    Some(match press.cause? {
+        ErrorCause::Slip => "cause: slip".to_string(),
+        ErrorCause::Planning => "cause: planning error".to_string(),
+        ErrorCause::Belief { target, with: None, .. } => {
+            format!("cause: false belief about {}", target.label(kitchen))
         }
-        Some(ErrorCause::Belief { target, with: Some(other), .. }) => {
-            format!("; cause: false belief about {} and {}", target.label(kitchen), other.label(kitchen))
+        ErrorCause::Belief { target, with: Some(other), .. } => {
+            format!("cause: false belief about {} and {}", target.label(kitchen), other.label(kitchen))
         }
-    };
-    format!("costs {}{because}", count(press.verdict.excess.unsigned_abs(), "press", "presses"))
+    })
 }
 
 pub fn protocol(event: &ProtocolEvent) -> String {

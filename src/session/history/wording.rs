@@ -20,27 +20,27 @@ pub fn button(kitchen: &Kitchen, agent: Agent, id: tomcom_core::kitchen::ButtonI
     kitchen.button(agent, id).name.replace('_', " ")
 }
 
-/// What the robot waits for; `waits_for`: names of the human's buttons; `gave_up`: why it gave up its last useful press,
-/// if that is known. In shorter words if the sentence has more signs than `most`, so that the buttons can be read.
-pub fn idle(reason: IdleReason, waits_for: &[impl AsRef<str>], gave_up: Option<AbortReason>, most: usize) -> String {
+/// What the robot waits for, in fewer and fewer words, all of which name the buttons; `waits_for`: names of the human's
+/// buttons; `gave_up`: why it gave up its last useful press, if that is known.
+pub fn idle(reason: IdleReason, waits_for: &[impl AsRef<str>], gave_up: Option<AbortReason>) -> Vec<String> {
     let buttons: Vec<String> = waits_for.iter().map(|name| name.as_ref().replace('_', " ")).collect();
-    match reason {
+    let told = match reason {
         IdleReason::NoOrder => "waits for an order".to_string(),
         IdleReason::HumanTurn if buttons.is_empty() => "waits until the human presses".to_string(),
         IdleReason::HumanTurn => {
-            let (first, more) = (&buttons[0], buttons.len() - 1);
             let all = buttons.join(" or ");
-            let told = [format!("waits until the human presses {all}"), format!("human's turn: {all}")];
-            // Whose presses they are is never left out: they would be read as the robot's plan.
-            let least = if more > 0 { format!("human: {first} +{more}") } else { format!("human: {first}") };
-            told.into_iter().find(|told| told.chars().count() <= most).unwrap_or(least)
+            // That it waits is never left out: the presses would be read as the robot's plan.
+            return ["waits until the human presses ", "human's turn: ", "waits: "]
+                .map(|told| format!("{told}{all}"))
+                .into();
         }
         IdleReason::Skipped => match gave_up {
             Some(AbortReason::Skipped) => "waits: the wizard skipped its press".to_string(),
             Some(reason) => format!("gave up: {}", reason.words()),
             None => "waits: its press was given up".to_string(),
         },
-    }
+    };
+    vec![told]
 }
 
 pub fn location(name: &str) -> String {

@@ -178,6 +178,14 @@ fn while_nothing_is_offered_the_line_changes_only_with_the_beliefs() {
 }
 
 #[test]
+fn an_offer_that_holds_still_keeps_its_row_among_the_signals() {
+    let mut stage = advised(true);
+    let advice = stage.session.advice.as_mut().expect("an advice");
+    advice.options.iter_mut().for_each(|option| option.net = -0.2);
+    stage.shows((200, 60), &["offered"]);
+}
+
+#[test]
 fn a_closed_offer_fades_while_it_can_be_taken_and_is_told_in_the_timeline_then() {
     let mut stage = advised(true);
     let offer = stage.session.offers.open().map(|offer| offer.seq).expect("an offer");

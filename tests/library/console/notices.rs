@@ -44,7 +44,7 @@ fn the_rate_of_the_gaze_begins_anew_after_a_gap() {
         assert!((hz - 120.0).abs() < 1.0, "{hz} Hz");
         stage.wait(1.5);
         assert_eq!(stage.session.gaze_hz(stage.model.now), None);
-        stage.shows((120, 40), &["NO GAZE", "no samples arrive now"]);
+        stage.shows((120, 40), &["NO GAZE 2 s", "no gaze for 2 s; last: ", "no samples arrive"]);
     }
 }
 

@@ -175,7 +175,9 @@ fn a_typed_code_leaves_its_own_recordings() {
     let headings =
         RecordingList::HEADINGS.into_iter().filter(|heading| *heading != "errors").map(str::to_string).collect();
     let mut picker = RecordingPicker::new("Which recording?".to_string(), headings, rows.collect(), "replay");
-    for (typed, code) in [("p21", "P21"), ("p07", "P07"), ("P1", "P10"), ("p07 wizard", "P07")] {
+    for (typed, code) in
+        [("p21", "P21"), ("p07", "P07"), ("P1", "P10"), ("p07 wizard", "P07"), ("p07-7", "P07"), ("28-p07", "P07")]
+    {
         picker.cursor = ListCursor { filter: typed.to_string(), at: 0 };
         let left = picker.left();
         assert_eq!(picker.rows[left[0]][0], code, "{typed}");
@@ -185,8 +187,12 @@ fn a_typed_code_leaves_its_own_recordings() {
 
 #[test]
 fn exit_is_for_leaving() {
-    for mut stage in [Stage::sushi(ParticipantKind::Simulated), Stage::new("burger", ParticipantKind::Keyboard)] {
-        for (typed, first) in [("exit", KeyAction::Quit), ("exclude", KeyAction::Manual(ManualAction::Exclude))] {
+    let mut burger = Stage::new("burger", ParticipantKind::Keyboard);
+    burger.at(1.0, Event::TrialStarted);
+    // Neither trial was aborted or excluded, so that there is nothing to repeat.
+    for mut stage in [Stage::sushi(ParticipantKind::Simulated), burger] {
+        let exclude = KeyAction::Manual(ManualAction::Exclude);
+        for (typed, first) in [("exit", KeyAction::Quit), ("exclude", exclude.clone()), ("excl", exclude)] {
             stage.control('k');
             type_in(&mut stage, typed);
             let Some(Dialog::Palette(cursor)) = &stage.model.dialog else { panic!("no palette") };
@@ -207,6 +213,22 @@ fn a_key_file_that_has_the_palettes_key_for_something_else_is_still_read() {
     stage.model.dialog = None;
     stage.key(KeyCode::Char(':'));
     assert!(matches!(stage.model.dialog, Some(Dialog::Palette(_))));
+}
+
+#[test]
+fn the_list_takes_what_is_typed_while_the_recordings_are_read() {
+    let mut picker = picker();
+    let rows = std::mem::take(&mut picker.rows);
+    picker.reading = Some(rows.len());
+    for letter in "p07 1/2".chars() {
+        assert_eq!(press(&mut picker, KeyCode::Char(letter)), None);
+    }
+    assert_eq!(press(&mut picker, KeyCode::Enter), None, "no row is chosen unseen");
+    let reads = screen(&picker);
+    assert!(reads.contains("reading 3 recordings") && reads.contains("p07 1/2_"), "{reads}");
+    (picker.rows, picker.reading) = (rows, None);
+    picker.rows[1][4] = "1/2 of study".to_string();
+    assert_eq!(picker.left(), [1], "the filter keeps signs that codes and steps have");
 }
 
 fn picker() -> RecordingPicker {

@@ -14,7 +14,7 @@ use tomcom::console::panels::screen;
 use tomcom::console::text_columns::squeeze;
 use tomcom::console::view::theme::{TerminalBackground, TextRole, Theme};
 use tomcom::console::{ConsoleMessage, KeyBindings, KeyFileBindings, update, view};
-use tomcom_core::robot::SafetyMode;
+use tomcom_core::robot::{AbortReason, IdleReason, SafetyMode};
 
 use super::{SIZES, Stage, panels};
 use crate::support::*;
@@ -378,12 +378,118 @@ fn orders_and_errors_are_explained_at_every_size() {
     ];
     stage.session.state.set_code(LocationId(hand), raw);
     stage.shows_everywhere(&["◐ cut tuna"]);
+    for size in [(120, 40), (200, 60)] {
+        stage.shows(size, &["◐ now raw tuna"]);
+    }
     // Whoever plays the participant at this keyboard has to remember the recipes.
     let mut stage = Stage::sushi(ParticipantKind::Keyboard);
     stage.key(KeyCode::Tab);
     for size in SIZES {
         stage.hides(size, &["□", "needs tuna"]);
     }
+}
+
+#[test]
+fn an_order_whose_items_are_there_says_which_step_is_left() {
+    let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
+    stage.at(1.0, Event::TrialStarted);
+    for (order, dish) in [("order_1", "salmon nigiri"), ("order_2", "salmon nigiri")] {
+        stage.at(1.0, Event::OrderShown { order: order.to_string(), dish: dish.to_string() });
+    }
+    let kitchen = stage.session.kitchen.clone();
+    let holds = |stage: &mut Stage, places: &[(&str, &str)]| {
+        stage.session.state = stage.session.kitchen.empty_state();
+        for order in &kitchen.orders {
+            stage
+                .session
+                .state
+                .set_order(*order, OrderContent::Dish(kitchen.dish_named("salmon nigiri").expect("a dish")));
+        }
+        for (place, content) in places {
+            let place = kitchen.location_named(place).expect("a place");
+            stage.session.state.set_code(place, kitchen.content_named(content).expect("a content").0);
+        }
+    };
+    let parts = [("assembly_board", "nori"), ("robot_hand", "rice shaped"), ("cutting_board", "salmon cut")];
+    for (places, short, long) in [
+        (&parts[..], "□ stack", "□ stack shaped rice + cut salmon"),
+        (&[("assembly_board", "salmon nigiri")], "□ plate", "□ plate from assembly board"),
+        (&[("plate", "salmon nigiri")], "□ serve", "□ serve"),
+    ] {
+        holds(&mut stage, places);
+        stage.shows_everywhere(&[short]);
+        for size in [(120, 40), (200, 60)] {
+            stage.shows(size, &[long, "✓ shaped rice  ✓ nori  ✓ cut salmon"]);
+        }
+        stage.hides((120, 40), &["fits no order"]);
+    }
+    // A dish that nobody ordered keeps others from being served.
+    holds(&mut stage, &[("plate", "tuna maki")]);
+    stage.shows_everywhere(&["fits no order"]);
+    // Whoever plays the participant at this keyboard has to know it.
+    stage.model.layer = KeyLayer::Participant;
+    stage.hides((120, 40), &["fits no order"]);
+}
+
+#[test]
+fn the_robots_panel_says_what_is_so() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.session.spec.robot.arm = ArmKind::Physics;
+    stage.shows_everywhere(&["▸ counter"]);
+    stage.shows((120, 40), &["▸robot comes", "presses made"]);
+    // The hand is empty: there is nothing to put there any more.
+    let hand = stage.session.kitchen.hands[Agent::Robot.index()];
+    let held = stage.session.state;
+    stage.session.state.set_code(hand, 0);
+    stage.shows((120, 40), &["▸ counter: of no use now"]);
+    stage.session.state = held;
+    // What it waits for is named whole.
+    stage.at(23.0, Event::RobotAborts { button: "counter".to_string(), reason: AbortReason::NoLongerUseful });
+    let waits_for = ["take rice", "cutting_board"].map(str::to_string).to_vec();
+    stage.at(23.0, Event::RobotIdles { reason: IdleReason::HumanTurn, waits_for });
+    stage.shows((120, 40), &["waits: take rice or cutting board"]);
+    stage.shows((200, 60), &["human's turn: take rice or cutting board"]);
+    stage.shows((80, 24), &["waits: take rice or cu"]);
+    // The reason of a stop stands there, whatever is said meanwhile.
+    let until_ns = at(26.0);
+    stage.at(23.5, Event::RobotIntends { button: "counter".to_string(), until_ns, initiative: true });
+    stage.shows((120, 40), &["▸ counter alone"]);
+    stage.press(23.6, Agent::Human, "trash");
+    stage.hides((120, 40), &["alone"]);
+    stage.at(24.0, Event::RobotSafety { mode: SafetyMode::ProtectiveStop, force_n: Some(98.0), joint: None });
+    stage.model.say(NoticeLevel::Done, "signal sent");
+    stage.shows((120, 40), &["contact with a person, 98 N", "^r resume", "signal sent"]);
+    stage.shows((80, 24), &["contact, 98 N  ^r resume"]);
+}
+
+#[test]
+fn a_loss_of_gaze_has_the_same_words_everywhere() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.session.spec.participant.gaze = GazeSource::Json;
+    stage.at(22.6, Event::Gaze(GazeSample::new(0.36, 0.35, 0.97)));
+    for step in 1..=40 {
+        stage.at(22.6 + 0.1 * f64::from(step), Event::Gaze(GazeSample::new(0.36, 0.35, 0.2)));
+    }
+    let lost = |stage: &Stage, capitals: &str, words: &str, why: &str| {
+        stage.shows((80, 24), &[capitals, &format!("{words}: {why}; last: ")]);
+        for size in [(120, 40), (200, 60)] {
+            let screen = stage.shows(size, &[capitals, why]);
+            assert_eq!(screen.matches(words).count(), 2, "gaze and beliefs say {words:?}:\n{screen}");
+        }
+    };
+    lost(&stage, "GAZE UNUSABLE 4 s", "gaze unusable for 4 s", "confidence 0.20 < 0.6");
+    stage.shows((80, 24), &["◂?"]);
+    // The time goes on from the last usable sample, also in a pause.
+    stage.wait(2.0);
+    lost(&stage, "NO GAZE 6 s", "no gaze for 6 s", "no samples arrive");
+    stage.model.gaze_closed = Some(stage.model.now);
+    lost(&stage, "NO GAZE 6 s", "no gaze for 6 s", "its sender closed the connection");
+    stage.at(29.6, Event::TrialPaused);
+    lost(&stage, "NO GAZE 7 s", "no gaze for 7 s", "its sender closed the connection");
+    stage.at(29.6, Event::TrialResumed);
+    stage.at(29.6, Event::TrialEnded { reason: TrialEndReason::Wizard });
+    stage.shows_everywhere(&["gaze idle"]);
+    stage.hides((120, 40), &[", now", "no gaze"]);
 }
 
 #[test]
@@ -410,8 +516,8 @@ fn the_head_never_loses_recording_gaze_and_robot() {
         stage.at(24.0, event);
         check(&stage, words);
         stage.session.phase = TrialPhase::Over(TrialEndReason::Wizard);
-        // An arm that rests is slow no more.
-        let words = if words == "robot slow" { "robot ok" } else { words };
+        // An arm that rests is slow no more, and no hand is in its way.
+        let words = if ["robot slow", "SAFEGUARD STOP"].contains(&words) { "robot ok" } else { words };
         for columns in [80, 120] {
             let screen = stage.screen((columns, 40));
             assert!(screen.lines().next().is_some_and(|head| head.contains(words)), "{screen}");

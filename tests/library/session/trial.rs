@@ -2,12 +2,13 @@
 
 use tomcom::run::recording_list::{RecordingListDetail, list};
 use tomcom_core::measures::JudgedPress;
+use tomcom_core::measures::attribution::ErrorCause;
 use tomcom_core::measures::errors::{PressJudge, PressVerdict};
 use tomcom_session::apply;
 use tomcom_session::engine::InputResult;
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::history::error_reasons::ExplainedError;
-use tomcom_session::order_needs::{ItemProgress, OrderWork};
+use tomcom_session::order_needs::{ItemProgress, LastStep, OrderWork};
 use tomcom_session::{TimelineEntry, TimelineEvent};
 use tomcom_study::analysis::trial_summary::{RegretSum, order_times};
 
@@ -231,6 +232,9 @@ fn an_error_is_explained_by_what_the_orders_need() {
         assert_eq!(explained[0].why, why, "{presses:?}");
         let cost = format!("{why}; costs {} press", press.verdict.excess);
         assert!(explained[0].with_cause.starts_with(&cost), "{}", explained[0].with_cause);
+        let press = JudgedPress { cause: Some(ErrorCause::Slip), ..press };
+        let caused = &ExplainedError::among(&session, &[press])[0].with_cause;
+        assert!(caused.starts_with(&format!("cause: slip; {cost}")), "{caused}");
     };
     check(&["crab maki"], &[(Human, "take shrimp")], "order 1 needs crab");
     // With two orders nobody knows for which of them it was.
@@ -282,6 +286,43 @@ fn what_is_there_counts_for_one_order_and_as_far_as_it_is() {
     // In the order of the recipe file: rice, nori, tuna. Cooked rice is ready for the maki before it is in work for the nigiri.
     assert_eq!(progress(0), [Missing, Stacked, InWork(at("counter"))]);
     assert_eq!(progress(1), [Ready(at("cooking_pot")), Missing, Missing]);
+}
+
+#[test]
+fn a_time_between_two_past_moments_is_not_the_time_until_the_trials_end() {
+    let mut session = Session::new(kitchen(), default_settings(), 0);
+    (session.trial_start, session.paused_at) = (at(10.0), at(60.0));
+    session.pauses = vec![(at(22.0), at(25.0))];
+    for phase in [TrialPhase::Running, TrialPhase::Paused, TrialPhase::Over(TrialEndReason::Wizard)] {
+        session.phase = phase;
+        assert_eq!(session.age(at(20.0), at(30.0)), at(7.0), "{phase:?}");
+    }
+    assert_eq!(session.age(at(20.0), at(90.0)), at(37.0), "the clock stands after the end");
+}
+
+#[test]
+fn once_all_items_are_there_the_steps_to_the_served_dish_are_left() {
+    let kitchen = kitchen();
+    let dish = kitchen.dish_named("tuna maki").expect("a dish");
+    let left = |places: &[(&str, &str)]| {
+        let mut state = kitchen.empty_state();
+        state.set_order(kitchen.orders[0], OrderContent::Dish(dish));
+        for (place, content) in places {
+            let place = kitchen.location_named(place).expect("a place");
+            state.set_code(place, kitchen.content_named(content).expect("a content").0);
+        }
+        OrderWork::default().needs(&kitchen, state)[0].last_step
+    };
+    let at = |name| kitchen.location_named(name).expect("a place");
+    let (rice, tuna) = (("cooking_pot", "rice cooked"), ("cutting_board", "tuna cut"));
+    assert_eq!(left(&[rice, tuna]), None, "the nori is missing");
+    assert_eq!(left(&[rice, ("cutting_board", "tuna raw"), ("assembly_board", "nori")]), None, "the tuna is in work");
+    assert_eq!(left(&[rice, tuna, ("assembly_board", "nori")]), Some(LastStep::Stack));
+    let whole = &kitchen.content(kitchen.dish(dish).stack()).name;
+    for place in ["assembly_board", "human_hand"] {
+        assert_eq!(left(&[(place, whole)]), Some(LastStep::Plate(at(place))));
+    }
+    assert_eq!(left(&[("plate", whole)]), Some(LastStep::Serve));
 }
 
 /// What each order needs after these presses of the robot, where the second order was there before all of them, and the

@@ -396,7 +396,7 @@ fn touch(random: &mut Stream) -> f64 {
         }
         // Where the tip will be in a moment, if neither hand nor forearm touches the arm yet.
         let mut ahead = rehearsal.clone();
-        (0..30).for_each(|_| ahead.cycle());
+        (0..60).for_each(|_| ahead.cycle());
         let tip = arm.tip(&ahead.controller.arm_at(1.0).actual).translation.vector;
         let hand = HandPose::reaching(tip.into(), table_m);
         let away_m = arm.distance(&rehearsal.controller.arm_at(1.0).actual, &hand);

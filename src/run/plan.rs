@@ -205,7 +205,8 @@ fn attempts(progress: &ParticipantProgress) -> String {
             let how = match (&attempt.outcome, &attempt.waived, &attempt.excluded) {
                 (RecordingOutcome::Complete, Some(reason), _) => &format!("criterion not met, waived ({reason})"),
                 (RecordingOutcome::Complete, None, _) if attempt.ended_by_wizard && stand.slot.period.is_some() => {
-                    &format!("counts, though {}, ended by the wizard", attempt.ended_where)
+                    let over = attempt.ended_where.split("; ").next().unwrap_or_default();
+                    &format!("{over}, as the wizard ended it; it counts")
                 }
                 (RecordingOutcome::Complete, None, _) if attempt.other_version || recorded.is_some() => "done",
                 (RecordingOutcome::Complete, None, _) => continue,

@@ -134,6 +134,7 @@ fn what_is_none_of_the_study_is_left_out_and_named() {
         move |header: &mut Value| {
             header["session"]["participant"]["code"] = json!(code);
             header["session"]["participant"]["kind"] = json!("display");
+            header["session"]["participant"]["gaze"] = json!("none");
         }
     };
     record(&out.join("P01-1"), &log, person("P01"));

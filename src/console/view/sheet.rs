@@ -284,10 +284,11 @@ fn draw_failed(pen: &mut Pen, screen: Rect, where_: &str, session: &Session, mod
         page.choice(index, &mark, reason, if is_chosen { TextRole::Strong } else { TextRole::Text });
     }
     let waivers = format!("1-{}", WAIVERS.len());
+    let (others, words) = if waiver.is_some() { ("another", "words") } else { ("choose a reason", "its words") };
     let hints = [
         ("enter", if waiver.is_some() { "waive for this reason" } else { "practise again" }, plain(KeyCode::Enter)),
-        (waivers.as_str(), "choose a reason", None),
-        ("letters", "its words", None),
+        (waivers.as_str(), others, None),
+        ("letters", words, None),
         ("bksp", "none", plain(KeyCode::Backspace)),
     ];
     let hints = if waiver.is_some() { &hints } else { &hints[..3] };

@@ -61,7 +61,7 @@ impl Captions {
     ) -> Markup {
         self.tables += 1;
         let words: Vec<Option<&str>> =
-            (0..heads.len()).map(|column| are_words(rows, column).then_some("word")).collect();
+            (0..heads.len()).map(|column| (column > 0 && are_words(rows, column)).then_some("word")).collect();
         html! {
             figure class="table" {
                 figcaption { b { "Table\u{a0}" (self.tables) "." } " " (caption) } "\n"

@@ -685,9 +685,10 @@ fn a_repeated_trial_keeps_the_state_of_the_display_in_the_head_line() {
         ..ParticipantDisplayHealth::default()
     });
     stage.at(0.0, Event::TrialStarted);
-    let head = |stage: &Stage| stage.screen((120, 40)).lines().next().expect("a line").to_string();
-    let told = head(&stage);
-    assert!(told.contains("trial 1/2 attempt 2") && told.contains("display"), "{told}");
+    let head = |size| stage.screen(size).lines().next().expect("a line").to_string();
+    let (told, wide) = (head((120, 40)), head((200, 60)));
+    assert!(told.contains("trial 1/2") && told.contains("display 84 ms"), "{told}");
+    assert!(wide.contains("trial 1/2 attempt 2") && wide.contains("display 84 ms"), "{wide}");
     // The question before its end says what is kept.
     stage.model.dialog = Some(Dialog::EndTrial);
     let presses = stage.session.spec.trial.presses;

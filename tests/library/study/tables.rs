@@ -221,7 +221,7 @@ fn participants_have_columns_for_all_of_their_trials() {
     let rows: Vec<_> = participants(&trials, &[]).collect();
     let value = |name: &str| columns.iter().find(|column| column.name == name).map(|column| column.cell(&rows[0]));
     for (trial, period) in trials.iter().zip(1..) {
-        assert_eq!(value(&format!("errors_{period}")), Some(trial.errors.into()));
+        assert_eq!(value(&format!("errors_{period}")), Some((trial.errors as f64).into()));
     }
     assert_eq!((value("errors_4"), value("assisted_second")), (None, None));
     let listed: Vec<_> = dictionary(&trials).filter(|row| row.table == CsvTable::Participants).collect();

@@ -198,7 +198,8 @@ def plays(tomcom, chromium, folder, language, way, size):
                 page.push(15)
                 page.wait_for("Stage.shown().tutorial.number === 2")
             assert not overflows(page), (name, overflows(page))
-            heights.add(page.ask("(() => { const { top, height } = document.querySelector('.lesson .next').getBoundingClientRect(); return Math.round(top + height / 2); })()"))
+            if step["kind"] not in ("recipes", "question"):
+                heights.add(page.ask("(() => { const { top, height } = document.querySelector('.lesson .next').getBoundingClientRect(); return Math.round(top + height / 2); })()"))
             checks_what_is_missing(page, way, step, words)
             if step["kind"] == "order":
                 checks_another_press(page, way, words, folder)
@@ -230,8 +231,8 @@ def plays(tomcom, chromium, folder, language, way, size):
                 page.wait_for("Stage.shown().tutorial.done")
                 assert touchables(page) == before, (name, before, touchables(page))
             go_on(page, way, name)
-        # "Next" stands at one height beside the kitchen, and at one on cards that hide it.
-        assert len(heights) <= (2 if size[0] > size[1] else 4), heights
+        # "Next" stands at one height beside the kitchen, but for the words of a card that are smaller.
+        assert size[0] < size[1] or max(heights) - min(heights) < 0.02 * size[1], heights
         page.stage("tutorial_over")
         page.screenshot(folder / "over.png")
         assert page.ask("document.querySelector('.card p').textContent") == words["page tutorial over text"]

@@ -51,6 +51,8 @@ struct Way {
     done_s: f64,
     takes_s: f64,
     held_up_s: f64,
+    /// Height by which the hand is lifted in the middle, in metres.
+    lifted_m: f64,
     /// Whether the movement is a press, after which the hand returns.
     presses: bool,
 }
@@ -142,7 +144,7 @@ impl ReachingHand {
         self.heedless = false;
         if self.way.is_none_or(|way| way.presses) {
             (self.planned, self.leaves) = (None, None);
-            self.set_out(self.rests_m, false);
+            self.set_out(self.rests_m, LIFTED_M, false);
         }
     }
 
@@ -152,12 +154,12 @@ impl ReachingHand {
         }
         self.goal_m = Some(to_m);
         self.leaves = None;
-        self.set_out(to_m, true);
+        self.set_out(to_m, LIFTED_M, true);
     }
 
-    fn set_out(&mut self, to_m: Point3<f64>, presses: bool) {
+    fn set_out(&mut self, to_m: Point3<f64>, lifted_m: f64, presses: bool) {
         let takes_s = self.takes_s(&to_m);
-        self.way = Some(Way { from_m: self.at_m, to_m, done_s: 0.0, takes_s, held_up_s: 0.0, presses });
+        self.way = Some(Way { from_m: self.at_m, to_m, done_s: 0.0, takes_s, held_up_s: 0.0, lifted_m, presses });
     }
 
     pub fn place(&self) -> HandPose {
@@ -185,13 +187,13 @@ impl ReachingHand {
             self.reach(planned.to_m);
         }
         if self.leaves.take_if(|leaves| *leaves <= now).is_some() {
-            self.set_out(self.rests_m, false);
+            self.set_out(self.rests_m, LIFTED_M, false);
         }
         let Some(mut way) = self.way else { return };
         let share = ((way.done_s + CYCLE_S) / way.takes_s).min(1.0);
         let eased = share.powi(3) * (10.0 - 15.0 * share + 6.0 * share * share);
         let mut next_m = way.from_m + (way.to_m - way.from_m) * eased;
-        next_m.z += LIFTED_M * 4.0 * eased * (1.0 - eased);
+        next_m.z += way.lifted_m * 4.0 * eased * (1.0 - eased);
         let off_m = distance_m(&self.at(next_m));
         let keeps_off = !self.heedless && off_m < KEEPS_OFF_M && off_m < distance_m(&self.place());
         if keeps_off {
@@ -204,6 +206,13 @@ impl ReachingHand {
         self.way = Some(way).filter(|_| !is_over);
         if is_over && way.presses {
             self.leaves = Some(now + SessionTime::from_secs_f64(self.how.lingers_s));
+        } else if is_over && self.at_m != self.rests_m {
+            // Below an arm, a hand that is lifted comes nearer to it. Such a hand draws back as it lies, along its forearm,
+            // and then goes to its resting place: it never stays where both wait for each other.
+            match way.lifted_m > 0.0 {
+                true => self.set_out(Point3::new(self.rests_m.x, self.at_m.y, self.at_m.z), 0.0, false),
+                false => self.set_out(self.rests_m, LIFTED_M, false),
+            }
         }
     }
 

@@ -11,7 +11,7 @@ use crate::stream_settings::RerunSpec;
 use crate::study_arm::StudyArm;
 use crate::tracker::TrackerSpec;
 use crate::wall_display::DisplaySpec;
-use crate::{person_code, ranges};
+use crate::{person_code, probes, ranges};
 use tomcom_core::base::number_range::OutOfRange;
 use tomcom_core::communication::HighlightSet;
 use tomcom_core::communication::concept::ConceptName;
@@ -125,7 +125,7 @@ impl SessionSpec {
         self.rerun.check()?;
         self.check_lsl()?;
         self.video.as_ref().map_or(Ok(()), VideoSpec::check)?;
-        if let Some(probes) = &self.probes {
+        if let Some(probes) = probes::of_trial(self) {
             probes.check(self.trial.seconds)?;
         }
         let population = self.participant.population.as_ref().and_then(Population::fault);

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use tomcom::run::live::display::PageEvent;
 use tomcom_core::communication::signals;
+use tomcom_core::robot::SafetyMode;
 use tomcom_devices::display::PageInput;
 use tomcom_devices::sight::page_language::DisplayWords;
 use tomcom_devices::sight::{DisplayStage, TrialClockState, scene, sight, time_left};
@@ -504,6 +505,21 @@ fn the_page_says_that_the_robot_is_stopped_also_where_a_real_one_stands() {
         assert_eq!(does(Event::TrialStarted), Value::Null, "it works");
         assert_eq!(does(Event::RobotStopped), "stopped", "{arm:?}");
         assert_ne!(does(Event::RobotResumed), "stopped", "{arm:?}");
+        let held = if arm == RobotDepiction::Hand { Value::from("waits") } else { Value::Null };
+        assert_eq!(does(Event::RobotHeld { by: Sender::Wizard }), held, "a real robot is seen");
+        assert_ne!(does(Event::RobotReleased { by: Sender::Wizard }), "waits", "{arm:?}");
+    }
+}
+
+#[test]
+fn the_page_says_nothing_about_hands() {
+    let mut engine = engine(files("sessions/default.toml"));
+    assert_eq!(engine.input(engine.session().time, Event::TrialStarted).refused, None);
+    assert!(engine.session().robot.intention.is_some(), "it has set out");
+    for (mode, says) in [(SafetyMode::Reduced, Value::Null), (SafetyMode::Safeguard, Value::from("waits"))] {
+        let mut session = engine.session().clone();
+        session.robot.arm.mode = mode;
+        assert_eq!(serde_json::to_value(sight(&session)).expect("a sight is JSON")["robot_does"], says, "{mode:?}");
     }
 }
 

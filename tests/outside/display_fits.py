@@ -35,7 +35,7 @@ MEASURE = """([states, DISTANCE_M]) => Object.entries(states).map(([name, sight]
   const meets = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > SLACK && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > SLACK;
   const inside = (a, b) => a.left >= b.left - SLACK && a.right <= b.right + SLACK && a.top >= b.top - SLACK && a.bottom <= b.bottom + SLACK;
   const lettered = [...document.querySelectorAll("#stage *")].filter((made) =>
-    !made.closest("svg") && isSeen(made) && [...made.childNodes].some((node) => node.nodeType === 3 && node.data.trim()));
+    !made.closest("svg") && isSeen(made) && !(made.closest(".given") && box(made).bottom > box(made.closest(".given")).bottom + SLACK) && [...made.childNodes].some((node) => node.nodeType === 3 && node.data.trim()));
   const texts = lettered.map((made) => {
     const range = document.createRange();
     range.selectNodeContents(made);

@@ -84,7 +84,7 @@ def counts(tomcom, chromium, folder, seed):
         console.key(".")
         page.stage("running")
         page.wait_for(f"document.querySelector('.clock').textContent !== '{stands // 60}:{stands % 60:02}'")
-        assert page.ask("document.querySelector('.served').textContent") == "✓ 0", page.ask("document.querySelector('.served').textContent")
+        assert page.ask("document.querySelector('.served').textContent") == "✓ 0 served", page.ask("document.querySelector('.served').textContent")
         page.close()
         console.quit()
     plain_session = session_file(folder / "plain", "sushi", seed)

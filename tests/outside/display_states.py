@@ -19,6 +19,14 @@ KITCHENS = ("sushi", "burger")
 # Nothing moves while it is measured; what is shown for a moment only stays.
 STILL = "*, *::before, *::after { animation: none !important; transition: none !important; } .why.says { opacity: 1 !important; visibility: visible !important; }"
 
+# What the robot does is said for a second or more: here, each state comes late enough to be shown.
+AT_ONCE = """(() => {
+  const draw = Stage.show, now = performance.now.bind(performance);
+  let ahead = 0;
+  performance.now = () => now() + ahead;
+  Stage.show = (...all) => { ahead += 2000; return draw(...all); };
+})()"""
+
 
 def longer(words):
     """The words of a language whose words are 40 % longer than the English ones."""
@@ -55,6 +63,7 @@ def opened(tomcom, browser, folder, kitchen, language, size=(1920, 1080), from_d
         try:
             page.stage("welcome")
             page.page.add_style_tag(content=STILL)
+            page.ask(AT_ONCE)
             yield page
         finally:
             page.close()
@@ -204,7 +213,7 @@ def states(scene, kitchen):
         served[order] = "served"
     made["served"] = sight(contents=served)
     made["empty"] = sight(contents=["empty"] * len(spots), served=0)
-    for what in ("waits_human", "waits_order", "waits_hand", "slow", "stopped"):
+    for what in ("waits_human", "waits_order", "waits", "stopped"):
         made[f"robot: {what}"] = sight(robot_does=what)
     for index, spot in enumerate(spots):
         if spot["kind"] != "order":
@@ -219,12 +228,14 @@ def states(scene, kitchen):
     for number, (place, reason) in enumerate(lines, 1):
         press = {"number": number, "at": place, "effective": False, "why": {"reason": reason.removeprefix("why "), "about": longest}}
         made[f"no effect: {reason} at {json.dumps(place)}"] = sight(presses=[press, None])
-    question = {"title": longer("Acceptance of the signals"), "item": "a", "number": 3, "of": 12, "answer": None, "before": "b", "given": [],
+    question = {"title": longer("Acceptance of the signals"), "item": "a", "number": 3, "of": 12, "answer": None, "skipped": False, "before": "b", "given": [],
                 "text": "The signals came at the moments at which they were needed, and told what was not known before."}
     for name, (form, answer) in forms().items():
         made["questionnaire" if name == "scale" else f"questionnaire: {name}"] = sight("questionnaire", question={**question, "form": form, "answer": answer})
+    made["questionnaire: left out"] = sight("questionnaire", question={**question, "form": forms()["choice"][0], "skipped": True})
     made["answered"] = sight("answered")
-    given = [{"item": f"i{number}", "text": f"The signals of this trial helped in part {number}.", "answer": str(number % 7 + 1) if number != 5 else None} for number in range(1, 13)]
+    given = [{"item": f"i{number}", "text": f"The signals of this trial helped in part {number}.", "answer": str(number % 7 + 1) if number != 5 else None,
+              "form": (forms()["scale"], forms()["slider"], forms()["text"])[number % 3][0], "point": (number % 7 + 1 if number % 3 == 0 else 7 * number) if number != 5 and number % 3 < 2 else None} for number in range(1, 13)]
     made["answers"] = sight("questionnaire", question={**question, "item": None, "form": None, "given": given, "text": "Thank you. Are your answers as you meant them?"})
     for name, page in tutorial_pages(scene, dishes).items():
         made[f"tutorial: {name}"] = sight("tutorial", tutorial={**TUTORIAL_PAGE, "step": name, **page})

@@ -38,7 +38,7 @@ def serves_an_order(tomcom, folder, kitchen):
             time.sleep(0.08)
             firefox.key(keys[button])
             firefox.wait_for(f"Stage.shown().presses[0] && Stage.shown().presses[0].number === {number}")
-        firefox.wait_for("Stage.shown().served === 1 && document.querySelector('.served').textContent === '✓ 1'")
+        firefox.wait_for("Stage.shown().served === 1 && document.querySelector('.served').textContent === '✓ 1 served'")
         firefox.screenshot(folder / "served.png")
         assert firefox.ask("document.documentElement.scrollHeight <= window.innerHeight && document.documentElement.scrollWidth <= window.innerWidth")
         version = firefox.version

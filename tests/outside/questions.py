@@ -232,7 +232,7 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         page.wait_for("!Stage.shown().question.item")
         pictures("confirm")
         # No word of an answer is broken.
-        broken = page.ask("""[...document.querySelectorAll(".given b")].filter((made) => {
+        broken = page.ask("""[...document.querySelectorAll(".given b:not(.point)")].filter((made) => {
             const range = document.createRange();
             range.selectNodeContents(made);
             return !made.textContent.includes(" ") && range.getClientRects().length > 1;

@@ -22,6 +22,7 @@ pub fn consent_sight(session: &Session, text: &str) -> DisplayContent {
         of: 1,
         form: Some(DisplayedAnswerForm::Consent { hold_s: HOLD_S }),
         answer: None,
+        skipped: false,
         before: None,
         given: Vec::new(),
     };

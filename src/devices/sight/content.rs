@@ -73,10 +73,8 @@ pub enum DisplayStage {
 pub enum RobotActivity {
     WaitsHuman,
     WaitsOrder,
-    /// A hand is near the arm.
-    Slow,
-    /// A hand is in the arm's way.
-    WaitsHand,
+    /// For a while, whatever the human does: somebody holds it, or it leaves out what it would press.
+    Waits,
     /// Until the wizard releases it.
     Stopped,
 }
@@ -180,12 +178,14 @@ fn robot_does(session: &Session) -> Option<RobotActivity> {
     if session.spec.display.arm == RobotDepiction::None {
         return None;
     }
-    match (robot.arm.mode, robot.idle.as_ref().map(|(reason, _)| reason)) {
-        (SafetyMode::Safeguard, _) => Some(RobotActivity::WaitsHand),
-        (_, Some(IdleReason::HumanTurn)) => Some(RobotActivity::WaitsHuman),
-        (_, Some(IdleReason::NoOrder)) => Some(RobotActivity::WaitsOrder),
-        (SafetyMode::Reduced, _) => Some(RobotActivity::Slow),
-        _ => None,
+    // Nothing is said about hands: nobody measures them, and the page's places are not those of the robot's table.
+    let is_blocked = robot.intention.is_some() && robot.arm.mode == SafetyMode::Safeguard;
+    match robot.idle.as_ref().map(|(reason, _)| reason) {
+        _ if robot.held && robot.driven_to.is_none() || is_blocked => Some(RobotActivity::Waits),
+        Some(IdleReason::HumanTurn) => Some(RobotActivity::WaitsHuman),
+        Some(IdleReason::NoOrder) => Some(RobotActivity::WaitsOrder),
+        Some(IdleReason::Skipped) => Some(RobotActivity::Waits),
+        None => None,
     }
 }
 

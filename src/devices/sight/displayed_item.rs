@@ -6,6 +6,7 @@ use super::page_language::DisplayWords;
 use tomcom_core::kitchen::{Agent, ButtonAction, Kitchen};
 use tomcom_session::Session;
 use tomcom_session::plan::{AnswerFormat, ItemOption};
+use tomcom_session::protocol::ItemAnswer;
 use tomcom_session::questionnaire::AnswerValue;
 use tomcom_session::wall_display::AnswerDevice;
 
@@ -23,6 +24,8 @@ pub struct DisplayedQuestionnaireItem {
     /// Kind of answer that the item takes; `None` when all items are answered.
     pub form: Option<DisplayedAnswerForm>,
     pub answer: Option<AnswerValue>,
+    /// Whether the participant left the item out.
+    pub skipped: bool,
     pub before: Option<String>,
     /// When all items are answered: each item with its answer, if it got one.
     pub given: Vec<DisplayedAnswer>,
@@ -83,6 +86,9 @@ pub struct DisplayedAnswer {
     pub text: String,
     /// The answer in words; `None` if the participant left the item out.
     pub answer: Option<String>,
+    /// Kind of answer that the item takes, and the answer: a point of a scale or slider is shown as it was given.
+    pub form: Option<DisplayedAnswerForm>,
+    pub point: Option<i64>,
 }
 
 impl From<AnswerFormat<'_>> for DisplayedAnswerForm {
@@ -124,6 +130,8 @@ pub(super) fn question(session: &Session) -> Option<DisplayedQuestionnaireItem> 
         item: item.id.clone(),
         text: item.text.clone(),
         answer: in_words(index),
+        form: questionnaire.form(index).map(DisplayedAnswerForm::from),
+        point: protocol.given(index).and_then(AnswerValue::number),
     });
     Some(DisplayedQuestionnaireItem {
         title: questionnaire.title.clone(),
@@ -133,6 +141,7 @@ pub(super) fn question(session: &Session) -> Option<DisplayedQuestionnaireItem> 
         of: questionnaire.items.len(),
         form: questionnaire.form(protocol.item).map(DisplayedAnswerForm::from),
         answer: protocol.given(protocol.item).cloned(),
+        skipped: protocol.answers.get(protocol.item).is_some_and(|one| matches!(one, Some(ItemAnswer::Skipped))),
         given: given.collect(),
         before: before.map(|item| item.id.clone()),
     })

@@ -108,7 +108,7 @@ pub(super) fn practice(session: &Session) -> Option<DisplayedProbe> {
         text: ask(kitchen, &words, &question.about),
         about: about(kitchen, &question.about),
         choices: choices(kitchen, &words, &question),
-        confidence: false,
+        confidence: settings.confidence,
         limit_s: settings.limit_s,
         late: false,
         closed: false,

@@ -138,7 +138,7 @@ pub fn scene(session: &Session) -> DisplayScene {
         display_m: kitchen.display_m,
         locations: kitchen.locations.iter().map(spot).collect(),
         storages: kitchen.storages.iter().map(shelf).collect(),
-        buttons: knobs(kitchen, &words),
+        buttons: knobs(kitchen, spec, &words),
         tags: if spec.display.tags { marks(kitchen) } else { Vec::new() },
         items: items.map(|item| picture(&item.name, &item.look)).collect(),
         dishes: kitchen.dishes.iter().map(|dish| picture(&dish.name, &dish.look)).collect(),
@@ -179,7 +179,7 @@ fn marks(kitchen: &Kitchen) -> Vec<TagPicture> {
     tags.corners.iter().map(mark).collect()
 }
 
-fn knobs(kitchen: &Kitchen, words: &DisplayWords) -> Vec<DisplayButton> {
+fn knobs(kitchen: &Kitchen, spec: &SessionSpec, words: &DisplayWords) -> Vec<DisplayButton> {
     let knob = |button: &tomcom_core::kitchen::Button| {
         let does = match button.action {
             ButtonAction::Take(_) => "take",
@@ -195,6 +195,8 @@ fn knobs(kitchen: &Kitchen, words: &DisplayWords) -> Vec<DisplayButton> {
         };
         let (name, area) = (button.name.clone(), button.area.clone());
         let &tomcom_core::kitchen::Button { key, gamepad, colour, .. } = button;
+        // Colours are those of caps: whoever presses keys has none before them.
+        let colour = colour.filter(|_| !spec.display.keys);
         DisplayButton { name, label, key, gamepad, colour, area, does, at }
     };
     kitchen.buttons[Agent::Human.index()].iter().map(knob).collect()

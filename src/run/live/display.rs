@@ -197,9 +197,9 @@ fn answer(event: ProtocolEvent, session: &Session) -> Option<Event> {
     (session.spec.display.questionnaire == AnswerDevice::Display).then_some(Event::Protocol(event))
 }
 
-/// Whether the shown questionnaire item is answered.
+/// Whether the shown questionnaire item is answered, or left out.
 fn is_answered(session: &Session) -> bool {
-    session.protocol.as_ref().is_some_and(|protocol| protocol.given(protocol.item).is_some())
+    session.protocol.as_ref().is_some_and(|protocol| matches!(protocol.answers.get(protocol.item), Some(Some(_))))
 }
 
 /// Whether every item of the questionnaire is answered or left out.

@@ -239,7 +239,11 @@ impl Part {
         if !is_log(&line) {
             return Ok(FoundLog::Other);
         }
-        let header = read_header(path, String::from_utf8_lossy(&line).trim_end())?;
+        let header = match read_header(path, String::from_utf8_lossy(&line).trim_end()) {
+            Ok(header) => header,
+            Err(_) if names_another_plan(&line, plan) => return Ok(FoundLog::Other),
+            Err(error) => return Err(error),
+        };
         let Some(step) = header.session.step.filter(|step| step.plan == plan) else {
             return Ok(FoundLog::Other);
         };
@@ -315,6 +319,12 @@ impl Part {
             outcome,
         }
     }
+}
+
+/// Whether a header that is not valid still tells that its recording is of another plan, or of none.
+fn names_another_plan(header: &[u8], plan: &str) -> bool {
+    let header = serde_json::from_slice::<serde_json::Value>(header);
+    header.is_ok_and(|header| header.pointer("/session/step/plan").and_then(|named| named.as_str()) != Some(plan))
 }
 
 /// The parts, the last one first, back to the one in which this phase began.

@@ -167,13 +167,12 @@ fn a_way_that_is_blocked_goes_over_what_stands_there_or_is_refused() {
     assert_eq!(until_report(&mut arm, None, 15.0).0, Some(Came::Clicked(ButtonId(3))));
 }
 
-/// Lets a hand go on by itself until this time; how near it came to something at this place, in metres.
-fn hand_goes_on(hand: &mut ReachingHand, now: &mut SessionTime, until_s: f64, arm_at: Point3<f64>) -> f64 {
+/// Lets a hand go on by itself until this time; how near it came to an arm that is so far away, in metres.
+fn hand_goes_on(hand: &mut ReachingHand, now: &mut SessionTime, until_s: f64, away: impl Fn(&HandPose) -> f64) -> f64 {
     let (end, mut nearest_m) = (SessionTime::from_secs_f64(until_s), f64::INFINITY);
     while let Some(next) = hand.next_move(*now).filter(|next| *next <= end) {
         *now = next;
-        let away = |place: &HandPose| (place.at_m - arm_at).norm();
-        hand.cycle(next, away);
+        hand.cycle(next, &away);
         nearest_m = nearest_m.min(away(&hand.place()));
     }
     nearest_m
@@ -188,7 +187,7 @@ fn a_hand_is_at_its_button_when_it_presses_goes_back_and_keeps_off_the_arm() {
             stream(1, "hand", 0),
         )
     };
-    let far = Point3::new(-1.0, 0.0, 1.0);
+    let far = |_: &HandPose| 1.0;
     let (mut free, mut now) = (hand(), SessionTime::ZERO);
     let [x, y] = SUSHI.button(Agent::Human, ButtonId(0)).at_m;
     let rests_m = free.place().at_m;
@@ -206,7 +205,27 @@ fn a_hand_is_at_its_button_when_it_presses_goes_back_and_keeps_off_the_arm() {
     // With the arm on its button it comes no nearer than a few centimetres, and after a while goes back.
     let (mut careful, mut now) = (hand(), SessionTime::ZERO);
     careful.pressed(now, [x, y]);
-    let nearest_m = hand_goes_on(&mut careful, &mut now, 10.0, Point3::new(x, y, 0.05));
+    let nearest_m = hand_goes_on(&mut careful, &mut now, 10.0, |place| (place.at_m - Point3::new(x, y, 0.05)).norm());
     assert!((0.05..0.1).contains(&nearest_m), "{nearest_m} m");
     assert_eq!(careful.place().at_m, rests_m);
+}
+
+/// An emergency stop left the arm so, over a hand that reached for the assembly board.
+const OVER_THE_HAND: JointAngles = [-0.2018, -1.4533, 1.9836, -2.1011, -1.5708, 0.0];
+
+#[test]
+fn a_hand_below_an_arm_that_stands_draws_back_and_does_not_wait_for_it() {
+    let mut hand = ReachingHand::new(&SUSHI, ReachingBehaviour::UNSEEN, stream(1, "hand", 0));
+    let (arm, rests_m, mut now) = (SerialArm::ur5(), hand.place().at_m, SessionTime::ZERO);
+    let away = |place: &HandPose| arm.distance(&OVER_THE_HAND, place);
+    let button =
+        |name: &str| SUSHI.button(Agent::Human, SUSHI.button_named(Agent::Human, name).expect("a button")).at_m;
+    hand.pressed(now, button("take rice"));
+    hand_goes_on(&mut hand, &mut now, 0.9, |_| 1.0);
+    hand.pressed(now, button("assembly_board"));
+    let comes_s = now.as_secs_f64() + 0.47;
+    hand_goes_on(&mut hand, &mut now, comes_s, |_| 1.0);
+    let nearest_m = hand_goes_on(&mut hand, &mut now, 10.0, away);
+    assert!((0.02..0.06).contains(&nearest_m), "it came below the arm: {nearest_m} m");
+    assert_eq!((hand.place().at_m, hand.next_move(now)), (rests_m, None), "the arm's way is free again");
 }

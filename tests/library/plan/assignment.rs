@@ -265,3 +265,16 @@ fn recordings_of_another_group_are_told_and_not_mixed_in() {
     let told = ParticipantProgress::from_recordings(&study, 0, &[other]).expect_err("another group");
     assert!(told.contains("2026-03-14-P01-01") && told.contains("AB") && told.contains("BA"), "{told}");
 }
+
+#[test]
+fn practice_has_no_probes_and_may_be_shorter_than_they_need() {
+    let study = study(|files| {
+        files.spec.probes = Some(toml::from_str("per_trial = 1\napart_s = 60.0").expect("settings of probes"));
+        files.spec.plan.as_mut().and_then(|plan| plan.familiarisation.as_mut()).expect("practice").seconds = 60.0;
+    });
+    let of = |slot| study.settings(WantedRecording { participant: 0, slot, attempt: 1, instructed: false }).0;
+    assert_eq!(of(0).check(), Ok(()), "practice");
+    let mut trial = of(1);
+    trial.trial.seconds = 60.0;
+    assert!(trial.check().is_err_and(|error| error.found.contains("takes 75 s")), "a trial of that length");
+}

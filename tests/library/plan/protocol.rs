@@ -303,6 +303,12 @@ fn check_damaged_headers(log: &[u8], out: &Path) {
         let found = told(&log.replacen(ours, &format!("{ours}{damage}"), 1)).expect_err(damage);
         assert!(found.contains("damaged/events.jsonl:1:"), "{damage}: {found}");
     }
+    let of_another = log.replacen("\"plan\":\"study\"", "\"plan\":\"other\"", 1).replacen(
+        ours,
+        &format!("{ours}\"trial\":\"first\","),
+        1,
+    );
+    assert_eq!(told(&of_another), Ok(0), "the trials of this plan are not in it");
     // A file of another program, and a folder without a recording.
     assert_eq!(told("{\"format\":\"of another program\"}\n"), Ok(0));
     fs::create_dir_all(out.join("notes")).expect("a folder");

@@ -52,6 +52,8 @@ const Hands = (() => {
     drawn.classList.remove("pushed");
     void drawn.offsetWidth;
     drawn.classList.add("pushed");
+    // Another stage must not play it once more.
+    drawn.addEventListener("animationend", ({ animationName }) => ["pushed", "tried"].includes(animationName) && drawn.classList.remove("pushed"));
   }
 
   /** The time of an event; a time that is not on the page's clock is replaced by the present one. */

@@ -44,12 +44,12 @@ const Questions = (() => {
       card.append(text("p", "count", `${question.number} / ${question.of}`), text("p", "item", question.text));
       if (question.form) card.append(...FORMS[question.form.kind](question, words, kit));
     } else {
-      card.append(text("p", "item", question.text), text("p", "hint", words.review));
+      card.append(text("p", "item done", question.text), text("p", "hint", words.review));
       const given = element("ol", question.given.length > 6 ? "given small" : "given");
-      for (const { item, text: asked, answer } of question.given) {
+      for (const { item, text: asked, answer, form, point } of question.given) {
         const line = element("li", ""), row = element("button", "");
         row.dataset.review = item;
-        row.append(text("span", "", asked), text("b", answer === null ? "none" : "", answer ?? words.skip));
+        row.append(text("span", "", asked), pointOf(form, point, kit) || text("b", answer === null ? "none" : "", answer ?? words.skip));
         line.append(row);
         given.append(line);
       }
@@ -59,18 +59,30 @@ const Questions = (() => {
     const row = element("div", "turns");
     const button = (does, label, isOpen = true) => {
       const made = text("button", does, label);
-      made.dataset.does = does;
-      if (!isOpen) made.setAttribute("aria-disabled", "true");
+      [made.dataset.does] = does.split(" ");
+      opens(made, isOpen);
       row.append(made);
     };
     if (question.before) button("back", words.back);
-    if (question.item) button("skip", words.skip);
-    if (question.item) button("next", words.next, isAnswered(question) || isTyped(question));
+    if (question.item) button(question.skipped ? "skip chosen" : "skip", words.skip);
+    if (question.item) button("next", words.next, question.skipped || isAnswered(question) || (isTyped(question) && pending(question)));
     else button("confirm", words.confirm);
     card.append(row);
     sheet.replaceChildren(card);
     const field = card.querySelector("textarea");
     if (field) { field.focus(); field.setSelectionRange(field.value.length, field.value.length); }
+  }
+
+  /** A given point of a scale or slider, on its line between the words of its two ends; nothing for other answers. */
+  function pointOf(form, point, { element, text }) {
+    if (point === null || !["scale", "slider"].includes(form?.kind)) return null;
+    const made = element("b", "point"), line = element("u", ""), of = form.kind === "scale" ? form.points - 1 : SLIDER_END;
+    if (form.kind === "scale") for (let at = 0; at <= of; at += 1) line.append(Object.assign(element("i", ""), { style: `left: ${(100 * at) / of}%` }));
+    line.append(Object.assign(element("em", ""), { style: `left: ${(100 * (form.kind === "scale" ? point - 1 : point)) / of}%` }));
+    made.append(text("span", "", form.low), line, text("span", "", form.high));
+    made.setAttribute("aria-label", `${form.low}, ${form.high}: ${point}`);
+    made.setAttribute("role", "img");
+    return made;
   }
 
   /** Another item takes touches once the participant can have seen it. */
@@ -80,6 +92,12 @@ const Questions = (() => {
     [shownItem, settled] = [now, performance.now() + SETTLES_MS];
     sheet.dataset.settles = "";
     setTimeout(() => { if (shownItem === now) delete sheet.dataset.settles; }, SETTLES_MS);
+  }
+
+  /** Whether a button looks open; a closed one says what is missing. */
+  function opens(made, isOpen) {
+    if (isOpen) made?.removeAttribute("aria-disabled");
+    else made?.setAttribute("aria-disabled", "true");
   }
 
   /** Several options that were all taken back are no answer. */
@@ -139,7 +157,11 @@ const Questions = (() => {
       };
       Object.assign(field, { rows: 3, value: pending(question) ?? question.answer ?? "" });
       field.setAttribute("aria-label", question.text);
-      field.addEventListener("input", () => { keep(question, field.value); count(); });
+      field.addEventListener("input", () => {
+        keep(question, field.value);
+        opens(document.querySelector(".turns .next"), field.value);
+        count();
+      });
       hint.setAttribute("role", "alert");
       count();
       return [field, hint];
@@ -202,6 +224,7 @@ const Questions = (() => {
   /** Goes on to the next item, with the typed answer or with the answer that was given before. */
   function next(question) {
     const typed = isTyped(question) ? pending(question) : null;
+    if (typed === null && question.skipped) return tell({ kind: "next" });
     if (typed === null && !isAnswered(question)) return chosen ? chosen() : Stage.say(isTyped(question) ? "first type" : "tutorial first question");
     if (typed === null) return tell({ kind: "next" });
     const words = inOneLine(typed);

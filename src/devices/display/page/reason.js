@@ -23,7 +23,7 @@ const Reason = (() => {
   // Air around the line, and beside what a tutorial marks with a frame, in heights of the line; how far it is moved up or down in one try, and how many tries to each side.
   const AIR = 0.08, MARK = 0.4, STEP = 0.3, ASIDE = 6;
   // What hiding a share of the stage costs, and what it costs to be its height away.
-  const HIDES = 1000, HIDES_NAME = 100;
+  const HIDES = 1000, HIDES_NAME = 400;
 
   /** The areas of what is seen of these on the stage, in fractions of it. */
   function obstacles(names, stage, [wide, high], line) {

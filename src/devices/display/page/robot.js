@@ -144,12 +144,5 @@ const Robot = (() => {
     if (made) made.hand.classList.toggle("highlight", isOn);
   }
 
-  /** The areas where the hand stands while it presses these places and storages in a tutorial. */
-  function areas({ robot, frames }) {
-    if (!made || !robot.length) return [];
-    const stand = ({ place }) => stands["storage" in place ? made.wall.locations.length + place.storage : place.location];
-    return frames.filter(({ place }) => place).map(stand).map(({ at, size }) => around(at, size, made.em));
-  }
-
-  return { build, move, hold, highlight, areas, pose: () => told };
+  return { build, move, hold, highlight, pose: () => told };
 })();

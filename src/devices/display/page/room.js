@@ -7,8 +7,8 @@ const Room = (scene, fontFamily) => {
   // Size of names, and smallest size of text that has to be read at 3 m: its capitals are 17 arc minutes high there on
   // a stage of 1.5 m. Then the height of a name above its place, and the smallest size of an action's button.
   const NAME_SIZE = 0.0145, LEAST_SIZE = 0.0140, NAME = 0.034, PILL = [0.096, 0.05], GAP = 0.007;
-  // Largest page of the tutorial. Width of the frame around an order with a signal, and the sizes that are tried for a button's words until they fit.
-  const LESSON = [0.28, 0.62], FRAME = 0.007, SIZES = [1, 0.92, 0.84, 0.76, 0.68];
+  // Width of the frame around an order with a signal, and the sizes that are tried for a button's words until they fit.
+  const FRAME = 0.007, SIZES = [1, 0.92, 0.84, 0.76, 0.68];
   const ratio = scene.display_m[0] / scene.display_m[1];
   const ruler = document.createElement("canvas").getContext("2d");
 
@@ -122,7 +122,7 @@ const Room = (scene, fontFamily) => {
 
   /** Where clock and number of served orders stand, one below the other: on top, as near to the middle as there is room. */
   function forStatus(others) {
-    const lines = Number(scene.clock) + Number(scene.served), [w, h] = [widthOf("88:88", 0.02), 0.05 * lines], y = 0.02, step = 0.01;
+    const lines = Number(scene.clock) + Number(scene.served), [w, h] = [Math.max(widthOf("88:88", 0.02), widthOf(`✓ ${scene.words["served count"]}8`, 0.0155)), 0.05 * lines], y = 0.02, step = 0.01;
     const tries = Array.from({ length: Math.floor((1 - w) / step) }, (_, index) => [index * step, y, w, h]);
     const free = tries.filter((rect) => !others.some((other) => overlaps(rect, other)));
     const off = ([x]) => Math.abs(x + w / 2 - 0.5);
@@ -160,25 +160,29 @@ const Room = (scene, fontFamily) => {
     return [left, order ? y : y + (h - high) / 2, wide, high];
   }
 
-  /** Whether what a page of the tutorial frames is the robot's. */
-  const isRobots = ({ area, place }) => area === "robot" || (place && ("storage" in place ? scene.storages[place.storage].agent === "robot" : scene.locations[place.location].kind === "robot_hand"));
-
-  /**
-   * Where a page of the tutorial can stand: where most room is, beside the recipe that it explains; or else over the robot's side, unless
-   * the page is about it.
-   */
-  function forLesson(others, recipe, { kind, frames }) {
-    const all = recipe ? [...others, recipe] : others, [robots, humans] = sides(), tags = scene.tags.map(({ area }) => area);
-    const over = (side, also = []) => forRecipe([...all.filter((rect) => tags.includes(rect) || !overlaps(rect, side)), ...also], undefined, { most: LESSON });
-    const beside = forRecipe(all, undefined, { most: LESSON });
-    // What the robot does is watched: the page stands on the other side.
-    if (kind === "robot") return [forRecipe([...all, robots], undefined, { most: LESSON }), over(humans, [robots])];
-    return frames.some(isRobots) ? [beside] : [beside, over(robots)];
+  /** Where a page of the tutorial stands, always as large: over the robot's side, or over another one if it is about that. */
+  function forLesson(recipe, page) {
+    const [robots, humans] = sides(), middle = table(), y = robots[1] + 0.05, w = robots[2], tags = scene.tags.map(({ area }) => area).filter((area) => area[1] > y);
+    const end = Math.min(robots[1] + robots[3], ...tags.map((area) => area[1] - 0.012)), lefts = [robots[0], humans[0] + humans[2] - w, middle[0] + (middle[2] - w) / 2];
+    return [Room.leastHidden(lefts.map((x) => [x, y, w, end - y]), Room.isAbout(scene, { robot: robots, human: humans, table: middle }, recipe, page)).area];
   }
 
   return {
     isUpright: false, placed: scene, em: [0.01, 0.01 * ratio],
     widthOf, nameSize: (spot) => 100 * nameSize(spot), sides, table, base, taken, forPill, forStatus, forRecipe,
-    isRobots, forLesson, enough: 1,
+    forLesson, enough: 1,
   };
+};
+
+/** The areas that a page of the tutorial is about: what it frames, its recipe, and what the robot does, which is watched. A button of the person is in none of them. */
+Room.isAbout = (scene, zones, recipe, { kind, frames }) => {
+  const areaOf = ({ area, place }) => zones[area] || (place && ("storage" in place ? scene.storages[place.storage] : scene.locations[place.location]).area);
+  return [...frames.map(areaOf), recipe, kind === "robot" && zones.robot].filter(Boolean);
+};
+
+/** The first of these areas that hides least of others, and how much that is. */
+Room.leastHidden = (areas, others) => {
+  const across = (from, wide, other, much) => Math.max(0, Math.min(from + wide, other + much) - Math.max(from, other));
+  const hides = ([x, y, w, h]) => others.reduce((sum, [ax, ay, aw, ah]) => sum + across(x, w, ax, aw) * across(y, h, ay, ah), 0);
+  return areas.map((area) => ({ area, hides: hides(area) })).reduce((best, one) => (one.hides < best.hides - 1e-9 ? one : best));
 };

@@ -6,6 +6,8 @@ const Stage = (() => {
   const root = document.getElementById("stage");
   // Higher than wide by so much, the screen shows the layout of upright screens, which is between so wide and so wide for its height.
   const UPRIGHT = 1.2, NARROW = 0.42, WIDE = 1 / UPRIGHT;
+  // For so long at least it is said what the robot does.
+  const SAYS_MS = 1000, says = { does: null, until: 0, timer: 0 };
   let pad = null, told = null, scene = null, room = null, shown = null, parts = null, words = {}, timeLeft = () => 0;
   let marks = { lost: false, ended: false, acts: true, free: false };
 
@@ -174,6 +176,8 @@ const Stage = (() => {
     Sound.build(scene);
     const kitchen = element("div", "kitchen");
     const [theirs, mine] = room.sides(), robots = buildZone("robot", theirs, scene.words.robot);
+    robots.append(text("p", "", ""));
+    Object.assign(says, { does: null, until: 0 });
     kitchen.append(robots, buildZone("human", mine, scene.words.human));
     kitchen.append(put(element("section", "zone table"), room.table()));
     const locations = scene.locations.map(buildLocation), storages = scene.storages.map(buildStorage);
@@ -187,15 +191,13 @@ const Stage = (() => {
     const robot = Robot.build(told, room, { taken: all, cards }, element);
     kitchen.append(...robot, ...locations.map((l) => l.made), ...storages.map((s) => s.made), ...pills, recipe);
     const sheet = element("div", "sheet"), toast = element("div", "toast"), status = put(Status.build(element), tally), target = element("div", "target", "<i></i>");
-    const reach = element("div", "reach", Art.place("human_hand", 100));
-    kitchen.append(reach);
     root.append(kitchen, status, sheet, Reason.build(element), toast, target, ...scene.tags.map((tag) => put(element("div", "tag", Art.tag(tag.rows)), tag.area)));
     const flash = element("div", "flash");
     if (scene.flash) {
       const tag = scene.tags[2] ? scene.tags[2].area : [0.99, 0.98, 0, 0];
       root.append(put(flash, [tag[0] - 0.033, 1 - 0.0267 * Number(scene.display_m[0] / scene.display_m[1]) * 0.9375 - 0.004, 0.025, 0.025 * (scene.display_m[0] / scene.display_m[1])]));
     }
-    parts = { kitchen, reach, robots, locations, storages, recipe, sheet, toast, flash, target, free, cards, all };
+    parts = { kitchen, robots, locations, storages, recipe, sheet, toast, flash, target, free, cards };
     mark({});
   }
 
@@ -318,18 +320,19 @@ const Stage = (() => {
     if (spot) partOf(spot).made.classList.add("intended");
   }
 
-  /** The robot's side says what the robot does if it does not simply work; a stop is seen at a glance. */
-  function drawRobot({ robot_does: does, presses: [press] }) {
-    // Where the robot takes the hand to be that it is careful of: at its last press.
-    const isNear = ["slow", "waits_hand"].includes(does) && press;
-    parts.reach.classList.toggle("open", Boolean(isNear));
-    if (isNear) {
-      const spot = "storage" in press.at ? scene.storages[press.at.storage] : scene.locations[press.at.location], [wide, high] = room.em;
-      put(parts.reach, [spot.area[0] - 1.2 * wide, spot.area[1] + spot.area[3] - 2.6 * high, 3.4 * wide, 3.4 * high]);
+  /** The robot's side says what the robot does if it does not simply work, each for a second or more; a stop is seen at once and at a glance. */
+  function drawRobot() {
+    clearTimeout(says.timer);
+    const does = (shown && shown.robot_does) || "", now = performance.now();
+    if (says.does === does) return;
+    if (says.until > now && does !== "stopped") {
+      says.timer = setTimeout(drawRobot, says.until - now);
+      return;
     }
-    if (root.dataset.robot === (does || "") && shown) return;
-    root.dataset.robot = does || "";
+    Object.assign(says, { does, until: now + SAYS_MS });
+    root.dataset.robot = does;
     parts.robots.querySelector("h2").textContent = does ? scene.words[`robot ${does.replace("_", " ")}`] : scene.words.robot;
+    parts.robots.querySelector("p").textContent = does === "stopped" ? scene.words["robot go on"] : "";
     fitWords(parts.robots);
   }
 
@@ -351,7 +354,7 @@ const Stage = (() => {
     parts.sheet.className = `sheet ${stage === "running" ? "" : "open"} ${BIG.includes(stage) ? "big" : ""} ${stage}`;
     if (stage === "questionnaire" && sight.question) return Questions.draw(parts.sheet, sight.question, scene.words, { element, text });
     if (sight.tutorial) {
-      const recipe = sight.signal && sight.signal.recipe, areas = room.forLesson([...parts.all, ...Robot.areas(sight.tutorial)], recipe && parts.cards[recipe.order], sight.tutorial);
+      const recipe = sight.signal && sight.signal.recipe, areas = room.forLesson(recipe && parts.cards[recipe.order], sight.tutorial);
       return Tutorial.draw(parts.sheet, sight.tutorial, { scene, areas, enough: room.enough, badges: badges(), element, text, put, partOf, fitWords, contentOf, draws: drawContents, contents: sight.contents });
     }
     Tutorial.end();
@@ -407,12 +410,12 @@ const Stage = (() => {
     drawContents(sight.contents);
     drawPresses(sight);
     drawIntention(sight.intention);
-    drawRobot(sight);
     if (!shown || JSON.stringify(shown.signal) !== JSON.stringify(sight.signal)) drawSignal(sight.signal, sight.contents);
     if (!shown || JSON.stringify(onSheet(shown)) !== JSON.stringify(onSheet(sight))) drawSheet(sight, left);
     drawTarget(sight);
-    Status.draw(sight, left);
+    Status.draw(sight, left, scene.words);
     shown = sight;
+    drawRobot();
   }
 
   /** Flashes the square by which an external video is synchronised. */

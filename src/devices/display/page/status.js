@@ -19,7 +19,7 @@ const Status = (() => {
   }
 
   /** `left` tells the seconds that the trial still has. */
-  function draw({ clock, served }, left) {
+  function draw({ clock, served }, left, words) {
     clearInterval(timer);
     const tick = () => {
       const said = clock ? inWords(left()) : "";
@@ -27,7 +27,7 @@ const Status = (() => {
     };
     tick();
     if (clock === "goes") timer = setInterval(tick, TICK_MS);
-    parts.served.textContent = served === null ? "" : `✓ ${served}`;
+    parts.served.textContent = served === null ? "" : `✓ ${words["served count"].replace("#", served)}`;
   }
 
   return { build, draw };

@@ -124,17 +124,17 @@ const Upright = (wall, fontFamily, ratio) => {
     return { area, words: Math.min(1, (area[2] * WIDE - 1.2) / Math.max(...label.split(" ").map((word) => measure(word, 1.6)))) };
   }
 
-  /** Where a text of the tutorial stands: below the orders, unless a recipe is open there. Only a text that has no room there hides the robot's side, and never if it is about it. */
-  function forLesson(_, recipe, { frames }) {
-    if (recipe) return [zones.places];
-    if (frames.some(across.isRobots)) return frames.some(({ place }) => place && !across.isRobots({ place })) ? [free] : [free, zones.places];
-    return [free, [free[0], free[1], free[2], zones.theirs[1] + zones.theirs[3] - free[1]]];
+  /** Where a text of the tutorial stands: below the orders and over the robot's side, or over the places if it is about that; small if it is about both. */
+  function forLesson(recipe, page) {
+    const above = [free[0], free[1], free[2], zones.theirs[1] + zones.theirs[3] - free[1]];
+    const { area, hides } = Room.leastHidden([above, zones.places], Room.isAbout(placed, { robot: zones.theirs, human: zones.mine, table: zones.places }, recipe, page));
+    return hides ? [free, area] : [area];
   }
 
   return {
     isUpright: true, placed, em: [1 / WIDE, 1 / high], nameSize, forPill, forLesson,
     widthOf: (said, size) => measure(said, size),
-    sides: () => [zones.theirs, zones.mine], table: () => zones.places, base: () => [zones.theirs[0], zones.theirs[1] + zones.theirs[3] / 2], taken: () => [], enough: 0.8,
+    sides: () => [zones.theirs, zones.mine], table: () => zones.places, base: () => [zones.theirs[0], zones.theirs[1] + zones.theirs[3] / 2], taken: () => [], enough: 0.72,
     forStatus: () => rect(WIDE - EDGE - 18, top.mine + 0.3, 17, NAME), forRecipe: () => free,
   };
 };

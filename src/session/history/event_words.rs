@@ -164,11 +164,10 @@ fn believes(kitchen: &Kitchen, belief: &RecordedBelief) -> String {
     let wrong = belief.aspects.iter().filter(|aspect| aspect.p_truth < FALSE_BELOW);
     let told = |aspect: &AspectBelief| format!("{} = {}", said(&aspect.aspect), kitchen.worded(&aspect.believes));
     let wrong: Vec<String> = wrong.map(told).collect();
-    // The cause that a simulated participant recorded for its press is shown, unless the participant recorded that the
-    // press follows from the true state ("as it is").
+    // Why a simulated participant presses so, unless that follows from the true state ("as it is").
     let cause = match belief.cause.as_str() {
         "as it is" => String::new(),
-        cause => format!(" ({})", said(&worded_cause(kitchen, cause))),
+        cause => format!("; reason: {}", said(&worded_cause(kitchen, cause))),
     };
     match wrong.is_empty() {
         true => format!("participant believes nothing wrong{cause}"),
@@ -317,20 +316,19 @@ pub fn arm_stopped(mode: SafetyMode, force_n: Option<f64>, joint: Option<u8>) ->
     }
 }
 
-/// The cost of the press compared with the human's best press, and the cause where it is known: "costs 2 presses; cause:
-/// false belief about robot hand".
+/// The cost of the press compared with the human's best press, and the cause where it is known, namely from what a
+/// simulated participant recorded: "costs 2 presses; cause (simulated participant): false belief about robot hand".
 pub(super) fn cost(kitchen: &Kitchen, press: &JudgedPress) -> String {
     let because = match press.cause {
-        None => String::new(),
-        Some(ErrorCause::Slip) => "; cause: slip".to_string(),
-        Some(ErrorCause::Planning) => "; cause: planning error".to_string(),
-        Some(ErrorCause::Belief { target, with: None, .. }) => {
-            format!("; cause: false belief about {}", target.label(kitchen))
-        }
-        Some(ErrorCause::Belief { target, with: Some(other), .. }) => {
-            format!("; cause: false belief about {} and {}", target.label(kitchen), other.label(kitchen))
+        None => None,
+        Some(ErrorCause::Slip) => Some("slip".to_string()),
+        Some(ErrorCause::Planning) => Some("planning error".to_string()),
+        Some(ErrorCause::Belief { target, with, .. }) => {
+            let about: Vec<String> = [Some(target), with].into_iter().flatten().map(|one| one.label(kitchen)).collect();
+            Some(format!("false belief about {}", about.join(" and ")))
         }
     };
+    let because = because.map_or(String::new(), |because| format!("; cause (simulated participant): {because}"));
     format!("costs {}{because}", count(press.verdict.excess.unsigned_abs(), "press", "presses"))
 }
 

@@ -131,6 +131,17 @@ pub fn place(session: &Session, aspect: AspectId) -> Option<LocationId> {
     }
 }
 
+/// Name of the state aspect that a belief is about: "cooking pot", "recipe of order 1"; for a dish that nobody ordered,
+/// with the dish's name.
+pub fn name(session: &Session, aspect: AspectId) -> String {
+    let kitchen = &session.kitchen;
+    match (kitchen.aspects[aspect.index()].kind, place(session, aspect)) {
+        (AspectKind::Recipe(_), Some(order)) => format!("recipe of {}", kitchen.location(order).label()),
+        (AspectKind::Recipe(dish), None) => format!("recipe of {}", kitchen.dish(dish).name),
+        (AspectKind::Location(location), _) => kitchen.location(location).label(),
+    }
+}
+
 /// What the participant believes and what is true, as far as they differ: of a recipe the items that differ, ingredient
 /// against ingredient ("cut salmon", "needs cut tuna"); of a place its content ("empty", "is nori").
 pub fn contrast(kitchen: &Kitchen, aspect: AspectId, thinks: usize, truth: usize) -> (String, String) {

@@ -351,7 +351,7 @@ impl SeekableReplay {
     /// The false beliefs of the estimate at which a replay stops: those that last, as far as the recording was read.
     fn false_beliefs(&self) -> impl Iterator<Item = &EstimatedFalseBelief> {
         let SessionFollower { false_beliefs, session, .. } = &self.replay.follower;
-        false_beliefs.all().filter(|one| one.lasted_s(session) >= LEAST_FALSE_S)
+        false_beliefs.all().filter(move |one| one.lasted_s(session) >= LEAST_FALSE_S)
     }
 
     /// Times of the landmarks of this kind, as far as the recording was read.

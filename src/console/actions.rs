@@ -109,7 +109,12 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
             None
         }
         KeyAction::Belief => {
-            let ranked: Vec<AspectId> = beliefs(session, model).iter().map(|belief| belief.aspect).collect();
+            let mut ranked = beliefs(session, model);
+            // A replay that stands at the beginning of a false belief opens that one.
+            if model.playback.is_some() {
+                ranked.sort_by_key(|belief| belief.since != Some(model.now));
+            }
+            let ranked: Vec<AspectId> = ranked.iter().map(|belief| belief.aspect).collect();
             if ranked.is_empty() {
                 model.say(NoticeLevel::Refused, "beliefs are estimated only after the trial's start");
             }

@@ -431,9 +431,8 @@ pub fn landmarks(recording: &Path, kinds: &[ReplayLandmark]) -> FileResult<Vec<R
     }
     if kinds.contains(&ReplayLandmark::FalseBelief) {
         for held in follower.false_beliefs.all() {
-            let name = wording::location(&kitchen.aspects[held.aspect.index()].name);
-            let [thinks, truth] = held.contents(kitchen);
-            add(held.began, held.ended, format!("false belief: {name} taken for {thinks}, truly {truth}"));
+            let ([thinks, truth], about) = (held.contents(kitchen), &held.about);
+            add(held.began, held.ended, format!("false belief: {about} taken for {thinks}, truly {truth}"));
         }
     }
     found.sort_by_key(|one| one.from);

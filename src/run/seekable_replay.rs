@@ -13,7 +13,7 @@ use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::history::belief_track::{BeliefHistory, BeliefSnapshot};
 use tomcom_session::history::error_reasons::ExplainedError;
-use tomcom_session::history::false_beliefs::EstimatedFalseBeliefs;
+use tomcom_session::history::false_beliefs::EstimatedFalseBelief;
 use tomcom_session::history::{event_words, signal_words, wording};
 use tomcom_session::log::LogPlace;
 use tomcom_session::replay::RecordingReplay;
@@ -27,6 +27,9 @@ use tomcom_study::standing::exclusion_status;
 const CHUNK: usize = 4096;
 /// Largest number of snapshots of the session; when there are more, every second one is dropped.
 const MOST_SNAPSHOTS: usize = 256;
+
+/// A replay stops at false beliefs that last at least this long: half of all are looks that nobody has taken yet.
+const LEAST_FALSE_S: f64 = 1.0;
 
 /// Event without effect that replaces hidden events in a replay for raters, so that sequence numbers stay.
 const HIDDEN: Event = Event::ClockJumped { by_ms: 0 };
@@ -345,16 +348,17 @@ impl SeekableReplay {
         last.checked_sub(2).map_or(0, |before| self.steps[before].index + 1)
     }
 
-    /// The false beliefs of the estimate, as far as the recording was read.
-    fn false_beliefs(&self) -> &EstimatedFalseBeliefs {
-        &self.replay.follower.false_beliefs
+    /// The false beliefs of the estimate at which a replay stops: those that last, as far as the recording was read.
+    fn false_beliefs(&self) -> impl Iterator<Item = &EstimatedFalseBelief> {
+        let SessionFollower { false_beliefs, session, .. } = &self.replay.follower;
+        false_beliefs.all().filter(move |one| one.lasted_s(session) >= LEAST_FALSE_S)
     }
 
     /// Times of the landmarks of this kind, as far as the recording was read.
     pub fn landmarks(&self, what: ReplayLandmark) -> Vec<SessionTime> {
         match what {
             ReplayLandmark::Error => self.errors.iter().map(|error| error.time).collect(),
-            ReplayLandmark::FalseBelief => self.false_beliefs().all().map(|one| one.began).collect(),
+            ReplayLandmark::FalseBelief => self.false_beliefs().map(|one| one.began).collect(),
             ReplayLandmark::Signal | ReplayLandmark::Marker => {
                 self.steps.iter().filter(|step| step.landmark == Some(what)).map(|step| step.time).collect()
             }
@@ -412,9 +416,10 @@ impl SeekableReplay {
                 _ => None,
             }),
             ReplayLandmark::FalseBelief => {
-                let told = self.false_beliefs().all().filter(|one| one.began == now).map(|one| {
+                let told = self.false_beliefs().filter(|one| one.began == now).map(|one| {
                     let (thinks, truth) = beliefs::contrast(&session.kitchen, one.aspect, one.thinks, one.truth);
-                    format!("{}: thinks {thinks}, {truth}", beliefs::name(session, one.aspect))
+                    let lasted_s = one.lasted_s(self.replay.session());
+                    format!("{}: thinks {thinks}, {truth}; for {lasted_s:.1} s", one.about)
                 });
                 Some(told.collect::<Vec<_>>().join("; "))
             }

@@ -164,7 +164,7 @@ def dishes(recording):
 
 
 def check_wizard(figures, tables, recordings):
-    """Hits: episodes with a signal about them. An error about "tuna maki of order 1" is one about this order or about this recipe."""
+    """Hits: episodes with a signal about them. An error about "recipe of tuna maki (order 1)" is one about this order or about this recipe."""
     actions, said, trials = tables["actions"], tables["communications"], tables["trials"]
     hits = omissions = 0
     for trial in trials[trials.condition == "wizard"].itertuples():
@@ -181,8 +181,8 @@ def check_wizard(figures, tables, recordings):
             for signal in inside.itertuples():
                 target = signal.target.replace("_", " ")
                 on_it = [dish for time, order, dish in shown if order == target and time <= signal.time_s]
-                about |= {target, f"{on_it[-1]} of" if on_it else target}
-            hit += any(spell.aspect == one or spell.aspect.startswith(one) or spell.aspect.endswith(f"of {one}") for one in about)
+                about |= {target, f"recipe of {on_it[-1]}" if on_it else target}
+            hit += any(spell.aspect == one or spell.aspect.startswith(one) or spell.aspect.endswith(f"({one})") for one in about)
         assert (trial.wizard_hits, trial.wizard_hits + trial.wizard_omissions) == (hit, len(spells)), (trial.recording, hit, spells)
         hits, omissions = hits + trial.wizard_hits, omissions + trial.wizard_omissions
     wizard = figures["wizard"]

@@ -23,7 +23,7 @@ KEEP = """
 const start = wasm_bindgen.WebHandle.prototype.start;
 wasm_bindgen.WebHandle.prototype.start = function (canvas) { window.viewer = this; return start.call(this, canvas); };
 """
-TIME = "() => { const id = window.viewer?.get_active_recording_id(); return id ? window.viewer.get_time_for_timeline(id, 'trial_time') : null }"
+TIME = "() => { const id = window.viewer?.get_active_recording_id(); return id ? window.viewer.get_time_for_timeline(id, 'trial_clock_time') : null }"
 PATIENCE_S = 300
 
 

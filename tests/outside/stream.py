@@ -142,7 +142,7 @@ def same_of_the_same_seed(tomcom, scratch):
 def on_trials_clock(stream):
     """A simulated trial begins with its session and is never paused: both clocks are the same, but for milliseconds, and lines
     of lists, which are told with tenths of a second."""
-    session, trial = rows_of(stream), rows_of(stream, "trial_time")
+    session, trial = rows_of(stream), rows_of(stream, "trial_clock_time")
     assert session.keys() == trial.keys()
     for entity, rows in trial.items():
         ends = max(time for time, _ in rows), max(time for time, _ in session[entity])
@@ -192,7 +192,7 @@ def main():
     recordings = [next((scratch / session).iterdir()) for session in ("default", "burger")]
     run(tomcom, "review", *recordings, "--save", both)
     run(RERUN, "rrd", "verify", both)
-    rows = rows_of(both, "trial_time")
+    rows = rows_of(both, "trial_clock_time")
     roots = Counter(entity.split("/")[0] for entity in rows)
     assert len(roots) == 2, roots
     starts = {root: min(place[0] for entity, places in rows.items() if entity.startswith(root) for place in places) for root in roots}

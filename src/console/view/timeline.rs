@@ -233,7 +233,7 @@ fn mark(
             let row = if *agent == Agent::Human { 1 } else { 2 };
             let role = if *agent == Agent::Human { TextRole::Human } else { TextRole::Robot };
             match (model.error(entry).is_some(), no_effect.is_none()) {
-                (true, _) => (row, signs.error.to_string(), TextRole::Strong),
+                (true, _) => (row, signs.error.to_string(), TextRole::Alarm),
                 (false, false) => (row, signs.no_effect.to_string(), role),
                 (false, true) => (row, signs.press.to_string(), role),
             }
@@ -312,7 +312,8 @@ pub fn draw_position(brush: &mut Painter, regions: &PanelAreas, session: &Sessio
         let role = match what {
             ReplayLandmark::Signal => TextRole::Signal,
             ReplayLandmark::FalseBelief => TextRole::FalseBelief,
-            ReplayLandmark::Error | ReplayLandmark::Marker => TextRole::Strong,
+            ReplayLandmark::Error => TextRole::Alarm,
+            ReplayLandmark::Marker => TextRole::Strong,
         };
         // The mark is the key that goes there.
         let key = model.keys.chord_for(&KeyAction::Move(ReplayAction::On(*what)));

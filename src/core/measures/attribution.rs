@@ -83,11 +83,11 @@ impl FalseBeliefTarget {
         location.map(AspectId::of_location).into_iter().chain(recipe)
     }
 
-    /// The target of the false belief in words: "cooking pot", "tuna maki of order 1".
+    /// The target of the false belief in words: "cooking pot", "recipe of tuna maki (order 1)".
     pub fn label(self, kitchen: &Kitchen) -> String {
         match self {
             FalseBeliefTarget::Order(order, Some(dish)) => {
-                format!("{} of {}", kitchen.dish(dish).name, kitchen.location(order).label())
+                format!("recipe of {} ({})", kitchen.dish(dish).name, kitchen.location(order).label())
             }
             FalseBeliefTarget::Order(location, None) | FalseBeliefTarget::Place(location) => {
                 kitchen.location(location).label()

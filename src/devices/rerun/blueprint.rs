@@ -18,19 +18,20 @@ use re_sdk_types::blueprint::components::{Corner2D, LinkAxis};
 use re_sdk_types::datatypes::{Range2D, TimeInt, TimeRange, TimeRangeBoundary, VisibleTimeRange};
 
 use crate::scene::WIDE;
-use tomcom_core::kitchen::Agent;
 
 /// Application name of all streams, by which recordings share one layout in the Rerun viewer.
 pub(super) const APPLICATION: &str = "tomcom";
-/// The timeline that viewers open with: the trial's clock, as the console shows it.
-pub const TRIAL_TIME: &str = "trial_time";
+/// The timeline that viewers open with: the trial's clock, as the console shows it. In the list of events the column of
+/// times is as wide as this name.
+pub const TRIAL_TIME: &str = "trial_clock_time";
 /// The timeline of the session's clock.
 pub(super) const SESSION_TIME: &str = "session_time";
 /// Durations of the gaze's trail and of its last part, in nanoseconds.
 const TRAIL_NS: i64 = 1_500_000_000;
 const RECENT_NS: i64 = 500_000_000;
-/// Duration that plots show before and after the time cursor, in nanoseconds: the legend lies on what comes after it.
-const AROUND_NS: i64 = 30_000_000_000;
+/// Durations that plots show before and after the time cursor, in nanoseconds: the legend lies on the first part.
+const BEFORE_NS: i64 = 45_000_000_000;
+const AFTER_NS: i64 = 15_000_000_000;
 
 /// Position of the camera, and the point at which it looks, in metres from the arm's base: the view shows the whole
 /// table from the human's side.
@@ -127,7 +128,8 @@ fn alone(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike
         views.push(series(lane, "Force (N), hand (cm)", &["robot/force", "robot/hand_away"], properties));
         views.push(lanes(lane, "Safety", &["robot/safety/**"], properties));
     }
-    let below = Horizontal::new([overview(lane, properties), Tabs::new(views).into()]).with_column_shares([3.0, 2.0]);
+    let bars = Tabs::new([overview(lane, properties), looks(lane, properties)]);
+    let below = Horizontal::new([bars.into(), Tabs::new(views).into()]).with_column_shares([3.0, 2.0]);
     let left = Vertical::new([seen(lane, properties), below.into()]).with_row_shares([5.0, 3.0]);
     let words = Tabs::new([now(lane), page(lane, "Signals", "signals/page"), about(lane)]);
     let side = Vertical::new([words.into(), happened(lane, properties)]).with_row_shares([1.0, 1.0]);
@@ -136,7 +138,9 @@ fn alone(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike
 
 /// Viewer layout for one of several recordings side by side.
 fn beside(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
-    let curves = Tabs::new([overview(lane, properties), beliefs(lane, properties), benefit(lane, properties)]);
+    let curves =
+        [overview(lane, properties), looks(lane, properties), beliefs(lane, properties), benefit(lane, properties)];
+    let curves = Tabs::new(curves);
     let told = Tabs::new([now(lane), page(lane, "Signals", "signals/page"), about(lane)]);
     let words = Horizontal::new([told.into(), happened(lane, properties)]);
     Vertical::new([seen(lane, properties), curves.into(), words.into()]).with_row_shares([5.0, 3.0, 4.0]).into()
@@ -186,16 +190,11 @@ fn seen(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike 
 }
 
 fn kitchen(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
-    let mut contents: Vec<String> = ["kitchen/**", "human/gaze/**"].map(|entities| path(lane, entities)).into();
-    if !lane.root.is_empty() {
-        // In a narrow view the names of the storages would lie on others; their pictures stay.
-        let names = Agent::BOTH.map(|agent| format!("- {}", path(lane, &format!("kitchen/storage/{}", agent.name()))));
-        contents.extend(names);
-    }
+    let contents = ["kitchen/**", "human/gaze/**"].map(|entities| path(lane, entities));
     let title = if lane.title.is_empty() { "Kitchen".to_string() } else { format!("Kitchen: {}", lane.title) };
     let view = Spatial2DView::new(title).with_origin(path(lane, "kitchen")).with_contents(contents);
     // The display with the labels around it: the viewer by itself takes scaled pictures for larger than they are.
-    let (x_range, y_range) = ([-30.0, WIDE + 30.0].into(), [-95.0, WIDE * 9.0 / 16.0 + 50.0].into());
+    let (x_range, y_range) = ([-175.0, WIDE + 175.0].into(), [-125.0, WIDE * 9.0 / 16.0 + 50.0].into());
     let view = with(view, "VisualBounds2D", &VisualBounds2D::new(Range2D { x_range, y_range }), properties);
     // Only gaze points are shown for a time, on either of the clocks.
     let mut view = view;
@@ -206,6 +205,11 @@ fn kitchen(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLi
         view = with(view, &place, &ranges, properties);
     }
     view
+}
+
+/// The time that plots show.
+fn around() -> TimeRange {
+    cursor(-BEFORE_NS, AFTER_NS)
 }
 
 /// A range of time about the viewer's cursor.
@@ -225,9 +229,12 @@ fn arm(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
 fn series(lane: &ShownRecording, name: &str, entities: &[&str], properties: &mut Vec<Property>) -> ContainerLike {
     let contents: Vec<String> = entities.iter().map(|entities| path(lane, entities)).collect();
     let view = TimeSeriesView::new(titled(lane, name)).with_origin(path(lane, "")).with_contents(contents);
-    let view = with(view, "PlotLegend", &PlotLegend::new().with_corner(Corner2D::RightTop), properties);
-    let around = TimeAxis::new().with_view_range(cursor(-AROUND_NS, AROUND_NS));
-    with(view, "TimeAxis", &around, properties)
+    let view = with(view, "PlotLegend", &PlotLegend::new().with_corner(Corner2D::LeftTop), properties);
+    // What is not in this time is not in the legend either.
+    let shown = |timeline: &str| VisibleTimeRange { timeline: timeline.into(), range: around() };
+    let shown = VisibleTimeRanges::new([TRIAL_TIME, SESSION_TIME].map(shown));
+    let view = with(view, "VisibleTimeRanges", &shown, properties);
+    with(view, "TimeAxis", &TimeAxis::new().with_view_range(around()), properties)
 }
 
 /// A view of belief probabilities of the aspects that were false once: the estimate and, for a simulated participant, its
@@ -250,8 +257,14 @@ fn lanes(lane: &ShownRecording, name: &str, entities: &[&str], properties: &mut 
 }
 
 fn overview(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
-    let entities = ["error", "look", "signal", "wrong_belief/**"];
-    lanes(lane, "Errors, looks, signals, wrong beliefs", &entities, properties)
+    lanes(lane, "Errors, signals, wrong beliefs", &["error", "signal", "wrong_belief/**"], properties)
+}
+
+/// The places that are looked at, about the time cursor: over a whole trial there are too many.
+fn looks(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
+    let view = StateTimelineView::new(titled(lane, "Looks")).with_origin(path(lane, ""));
+    let view = view.with_contents([path(lane, "look")]);
+    with(view, "TimeAxis", &TimeAxis::new().with_view_range(around()), properties)
 }
 
 fn page(lane: &ShownRecording, name: &str, entity: &str) -> ContainerLike {

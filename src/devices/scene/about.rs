@@ -35,12 +35,12 @@ pub fn page(session: &Session) -> EntityUpdate {
 }
 
 const LEGEND: &str = "\
-**Colours**: a place's name, its curve of P(truth), its looks and its bars of wrong beliefs have one colour. Bars of errors are \
-red, of signals pink. In the list: the human brown, the robot blue, the wizard violet, the assistant green, errors red. \
-Buttons of the robot are blue, of the human brown, of both red.
+**Colours**, as on the console: errors red, false beliefs yellow, signals, advice and the wizard violet, the human teal, the \
+robot blue, gaze and looks green. What lies in a place is brown. Buttons of the robot are blue, of the human teal, of both \
+red. A bar is grey where several are too close to be told apart: zoom in.
 
 **P(truth)**: lines are the estimate, \u{25c6} is what a simulated participant believes itself before a press, crosses at 0 \
-are errors. A place is drawn from its first wrong belief on.
+are errors. A line begins when a belief has been wrong for a second, and ends when it is known (95 %); at most six at a time.
 
 **Gaze**: the circle is the newest gaze with the area that can be read, large dots are the last 0.5 s, small ones the last \
 1.5 s. Grey dots are uncertain: the eye tracker's confidence is too low, and the estimate does not use them.

@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 
-use super::entity_content::{self, EntityData, EntityUpdate, SceneColour, ScenePoint, SeriesStyle, slug};
+use super::entity_content::{self, CURVES, EntityData, EntityUpdate, ScenePoint, SeriesStyle, slug};
 use tomcom_arm::kinematics::SerialArm;
 use tomcom_arm::kinematics::{CollisionSolid, LinkShape};
 use tomcom_arm::physics::bodies::HandPose;
@@ -36,15 +36,8 @@ const FELT: &str = "robot/felt";
 const CONTACT: &str = "robot/contact";
 const HAND: &str = "human/hand/shape";
 
-/// The joints of a UR5 from base to tool, each with the colour of its curve.
-const JOINTS: [(&str, SceneColour); 6] = [
-    ("base", entity_content::ROBOT),
-    ("shoulder", entity_content::HUMAN),
-    ("elbow", entity_content::ASSISTANT),
-    ("wrist 1", entity_content::WIZARD),
-    ("wrist 2", entity_content::SIGNAL),
-    ("wrist 3", entity_content::FULL),
-];
+/// The joints of a UR5 from base to tool.
+const JOINTS: [&str; 6] = ["base", "shoulder", "elbow", "wrist 1", "wrist 2", "wrist 3"];
 
 /// Arm, table, buttons and hand as the viewer shows them. Only of the physical arm: the poses of the timed arm are nowhere.
 #[derive(Clone, Debug)]
@@ -69,15 +62,15 @@ impl RobotArmScene {
             let colour = if index % 2 == 0 { entity_content::JOINT } else { entity_content::STEEL };
             rows.push(EntityUpdate::new(entity(&link.name), EntityData::Solids(link.solids.clone(), colour)));
         }
-        for (name, colour) in JOINTS {
-            let series = SeriesStyle { name: format!("{name} (degrees)"), colour };
+        for (name, colour) in JOINTS.into_iter().zip(CURVES) {
+            let series = SeriesStyle::new(format!("{name} (degrees)"), colour);
             rows.push(EntityUpdate::new(joint(name), EntityData::Line(series)));
         }
         rows.extend(hand_shapes());
         for (entity, name, colour) in
             [(FORCE, "force on the arm (N)", entity_content::ROBOT), (AWAY, "hand away (cm)", entity_content::HUMAN)]
         {
-            rows.push(EntityUpdate::new(entity, EntityData::Line(SeriesStyle { name: name.to_string(), colour })));
+            rows.push(EntityUpdate::new(entity, EntityData::Line(SeriesStyle::new(name, colour))));
         }
         rows
     }
@@ -195,7 +188,7 @@ fn places(arm: &SerialArm, joints: &JointAngles) -> Vec<EntityUpdate> {
     let links = arm.links.iter().zip(arm.forward(joints)).skip(1);
     let links = links.map(|(link, place)| EntityUpdate::new(entity(&link.name), EntityData::Place(place)));
     let angles = JOINTS.iter().zip(joints);
-    let angles = angles.map(|((name, _), angle)| EntityUpdate::new(joint(name), EntityData::Value(angle.to_degrees())));
+    let angles = angles.map(|(name, angle)| EntityUpdate::new(joint(name), EntityData::Value(angle.to_degrees())));
     links.chain(angles).collect()
 }
 

@@ -1,7 +1,7 @@
 //! Entities of beliefs: curves and lanes of what is believed wrong, and the page that tells in words what was pressed,
 //! shown and believed.
 
-use super::entity_content::{self, EntityData, EntityUpdate, MarkShape, SeriesStyle, slug};
+use super::entity_content::{self, CURVES, EntityData, EntityUpdate, MarkShape, SeriesStyle, slug};
 use super::happenings::JudgedPressShown;
 use super::{SceneInputs, moment_on_clock};
 use tomcom_core::base::time::SessionTime;
@@ -17,6 +17,10 @@ use tomcom_session::{Event, Session, TimelineEntry, TimelineEvent, TimestampedEv
 const EVERY_NS: u64 = 200_000_000;
 /// State aspects with at least this P(truth), the estimated probability of the true value, are not listed on the page.
 const KNOWN: f64 = 0.95;
+/// A curve begins when a belief has been false so long; another one can have its colour so long after its end, when no view
+/// of the plot has both.
+const LASTING: SessionTime = SessionTime(1_000_000_000);
+const APART: SessionTime = SessionTime(60_000_000_000);
 /// Path of the page in words.
 const PAGE: &str = "human/now";
 /// Path of the lane with the human's errors, each until the next press.
@@ -34,15 +38,25 @@ struct Held<'a> {
     p_truth: f64,
 }
 
+/// A curve of the plot, which has the colour of its place among the curves.
+#[derive(Clone, Copy, Debug)]
+struct BeliefCurve {
+    aspect: usize,
+    /// Whether it goes on, and when something was drawn last.
+    is_open: bool,
+    last: SessionTime,
+}
+
 /// State of the Rerun entities that show beliefs.
 #[derive(Clone, Debug, Default)]
 pub struct BeliefScene {
     tick: Option<u64>,
     /// For each state aspect, when the false belief began whose bar is drawn.
     drawn_since: Vec<Option<SessionTime>>,
-    /// For each state aspect, whether its estimate was false once: its curve begins there, so that plot and legend
-    /// have only what was believed wrong.
-    is_drawn: Vec<bool>,
+    /// The curves of the plot: of what is believed wrong for a while, until it is known.
+    curves: [Option<BeliefCurve>; entity_content::CURVES.len()],
+    /// For each state aspect, since which press the simulated participant believes what it believes wrong.
+    own_since: Vec<Option<(String, SessionTime)>>,
     /// What the simulated participant believes wrong before its next press, in words.
     own: String,
     /// State of the kitchen before the last press of the human.
@@ -78,16 +92,16 @@ fn wrong(aspect: &str) -> String {
 
 /// Entity updates with the names and colours of the curves and marks.
 pub fn fixed_beliefs(kitchen: &Kitchen) -> Vec<EntityUpdate> {
-    let of_aspect = |(nth, aspect): (usize, &StateAspect)| {
-        let colour = entity_content::of_aspect(AspectId(nth as u8));
+    let of_aspect = |aspect: &StateAspect| {
         let name = wording::location(&aspect.name);
-        let own = SeriesStyle { name: format!("{name} \u{25c6}"), colour };
+        let own = SeriesStyle { name: Some(format!("{name} \u{25c6}")), colour: None };
+        let estimate = SeriesStyle { name: Some(name), colour: None };
         [
-            EntityUpdate::new(estimated(&aspect.name), EntityData::Line(SeriesStyle { name, colour })),
+            EntityUpdate::new(estimated(&aspect.name), EntityData::Line(estimate)),
             EntityUpdate::new(held_truly(&aspect.name), EntityData::Marks(own, MarkShape::Diamond)),
         ]
     };
-    kitchen.aspects.iter().enumerate().flat_map(of_aspect).collect()
+    kitchen.aspects.iter().flat_map(of_aspect).collect()
 }
 
 impl BeliefScene {
@@ -222,26 +236,57 @@ impl BeliefScene {
                 let [thinks, truth] = held.contents(kitchen);
                 format!("{thinks}, truly {truth}")
             });
-            let data = EntityData::State(words, entity_content::of_aspect(aspect));
+            let data = EntityData::State(words, entity_content::FALSE);
             rows.push(EntityUpdate::new(wrong(&kitchen.aspects[index].name), data));
         }
         rows
     }
 
-    /// Entity updates of the estimate: curves of aspects that were false once.
+    /// The trial is over, and with it the last error.
+    pub fn ended(&mut self) -> Option<EntityUpdate> {
+        let was_error = std::mem::take(&mut self.is_error);
+        was_error.then(|| EntityUpdate::new(ERRORS, EntityData::State(String::new(), entity_content::ERROR)))
+    }
+
+    /// The curve of an aspect, with the updates that give it a colour if it is new; `None` if all colours are taken.
+    fn curve(&mut self, kitchen: &Kitchen, aspect: usize, now: SessionTime) -> Option<(usize, Vec<EntityUpdate>)> {
+        let is_its = |curve: &Option<BeliefCurve>| curve.is_some_and(|curve| curve.aspect == aspect);
+        if let Some(nth) = self.curves.iter().position(is_its) {
+            return Some((nth, Vec::new()));
+        }
+        let is_free =
+            |curve: &Option<BeliefCurve>| curve.is_none_or(|curve| !curve.is_open && now - curve.last > APART);
+        let nth = self.curves.iter().position(is_free)?;
+        self.curves[nth] = Some(BeliefCurve { aspect, is_open: false, last: now });
+        let (name, style) = (&kitchen.aspects[aspect].name, SeriesStyle { name: None, colour: Some(CURVES[nth]) });
+        let line = EntityUpdate::new(estimated(name), EntityData::Line(style.clone()));
+        Some((nth, vec![line, EntityUpdate::new(held_truly(name), EntityData::Marks(style, MarkShape::Diamond))]))
+    }
+
+    /// Entity updates of the estimate: curves of aspects that are false for a while, until they are known.
     fn estimated(&mut self, session: &Session, held: &[Held], follower: &SessionFollower) -> Vec<EntityUpdate> {
         let kitchen = &session.kitchen;
         let mut rows = Vec::new();
-        self.is_drawn.resize(held.len(), false);
-        for (one, is_drawn) in held.iter().zip(&mut self.is_drawn) {
-            *is_drawn |= one.p_truth < FALSE_BELOW;
-            if *is_drawn {
-                let name = &kitchen.aspects[one.aspect].name;
-                rows.push(EntityUpdate::new(estimated(name), EntityData::Value(one.p_truth)));
+        let now = session.time;
+        for one in held {
+            let is_open = |curve: &BeliefCurve| curve.aspect == one.aspect && curve.is_open;
+            let is_false = follower.false_beliefs.at(AspectId(one.aspect as u8), now);
+            let lasts = one.p_truth < FALSE_BELOW && is_false.is_some_and(|held| now - held.began >= LASTING);
+            if !lasts && !self.curves.iter().flatten().any(is_open) {
+                continue;
             }
+            let Some((nth, colours)) = self.curve(kitchen, one.aspect, now) else { continue };
+            rows.extend(colours);
+            let (name, is_open) = (&kitchen.aspects[one.aspect].name, one.p_truth < KNOWN);
+            rows.push(EntityUpdate::new(estimated(name), EntityData::Value(one.p_truth)));
+            if !is_open {
+                rows.push(EntityUpdate::new(estimated(name), EntityData::NoValue));
+            }
+            self.curves[nth] = Some(BeliefCurve { aspect: one.aspect, is_open, last: now });
         }
         let unsure = held.iter().filter(|one| (FALSE_BELOW..KNOWN).contains(&one.p_truth));
-        let unsure: Vec<String> = unsure.map(|one| format!("{} {}", named(kitchen, one), percent(one))).collect();
+        let unsure: Vec<String> =
+            unsure.map(|one| format!("{} {}", named(kitchen, session.state, one), percent(one))).collect();
         let since = |aspect| {
             let began = follower.false_beliefs.at(aspect, session.time)?.began;
             Some(moment_on_clock(session.trial_clock_at(began)))
@@ -265,13 +310,27 @@ impl BeliefScene {
         let held: Vec<Held> = aspects
             .map(|(aspect, told)| Held { aspect, believes: kitchen.worded(&told.believes), p_truth: told.p_truth })
             .collect();
-        let wrong = believed(kitchen, session.state, &held, |_| None);
-        self.own = titled("Believed wrong before it, by the simulated participant", &wrong);
-        let is_false = |one: &&Held| one.p_truth < FALSE_BELOW;
-        let row = |one: &Held| {
-            EntityUpdate::new(held_truly(&kitchen.aspects[one.aspect].name), EntityData::Value(one.p_truth))
+        let now = session.time;
+        self.own_since.resize(held.len(), None);
+        for (one, since) in held.iter().zip(&mut self.own_since) {
+            let began = since.take().filter(|(believes, _)| believes == one.believes).map_or(now, |(_, began)| began);
+            *since = (one.p_truth < FALSE_BELOW).then(|| (one.believes.to_string(), began));
+        }
+        let since = |aspect: AspectId| {
+            let began = self.own_since[aspect.index()].as_ref()?.1;
+            let at = moment_on_clock(session.trial_clock_at(began));
+            Some(if began == now { at } else { format!("its press at {at} at least") })
         };
-        held.iter().filter(is_false).map(row).collect()
+        let wrong = believed(kitchen, session.state, &held, since);
+        self.own = titled("Believed wrong before it, by the simulated participant", &wrong);
+        let mut rows = Vec::new();
+        for one in held.iter().filter(|one| one.p_truth < FALSE_BELOW) {
+            let Some((nth, colours)) = self.curve(kitchen, one.aspect, now) else { continue };
+            rows.extend(colours);
+            rows.push(EntityUpdate::new(held_truly(&kitchen.aspects[one.aspect].name), EntityData::Value(one.p_truth)));
+            self.curves[nth].iter_mut().for_each(|curve| curve.last = now);
+        }
+        rows
     }
 
     fn page(&self) -> String {
@@ -294,7 +353,11 @@ fn believed(kitchen: &Kitchen, state: State, held: &[Held], since: impl Fn(Aspec
     let line = |one: &&Held| {
         let (believes, truly) = (taken_for_what(kitchen, state, one), truth(kitchen, state, one.aspect));
         let since = since(AspectId(one.aspect as u8)).map_or_else(String::new, |since| format!("; since {since}"));
-        format!("- **{}**: **{believes}**, truly {truly}; P(truth) {}{since}\n", named(kitchen, one), percent(one))
+        format!(
+            "- **{}**: **{believes}**, truly {truly}; P(truth) {}{since}\n",
+            named(kitchen, state, one),
+            percent(one)
+        )
     };
     wrong.iter().map(line).collect()
 }
@@ -304,8 +367,8 @@ fn titled(title: &str, lines: &str) -> String {
     if lines.is_empty() { String::new() } else { format!("\n{title}:\n\n{lines}") }
 }
 
-fn named(kitchen: &Kitchen, held: &Held) -> String {
-    wording::location(&kitchen.aspects[held.aspect].name)
+fn named(kitchen: &Kitchen, state: State, held: &Held) -> String {
+    wording::aspect(kitchen, state, AspectId(held.aspect as u8))
 }
 
 fn percent(held: &Held) -> String {

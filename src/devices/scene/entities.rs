@@ -5,8 +5,7 @@ use super::pictures;
 use tomcom_core::communication::Signal;
 use tomcom_core::gaze::{GazeSample, MIN_CONFIDENCE};
 use tomcom_core::kitchen::{
-    self, Agent, AspectId, ContentId, IngredientStorage, Kitchen, Location, LocationId, LocationKind, OrderContent,
-    State,
+    self, Agent, ContentId, IngredientStorage, Kitchen, Location, LocationId, LocationKind, OrderContent, State,
 };
 use tomcom_session::history::wording;
 use tomcom_session::{Session, proposals};
@@ -20,6 +19,13 @@ const THICK: f64 = 6.0;
 const ABOVE: f64 = 46.0;
 /// Distance of a label's middle from the edge of the storage beside it.
 const BESIDE: f64 = 60.0;
+/// Storages nearer to the display's edge than this share of its width have their names outside, so far from the edge.
+const AT_EDGE: f64 = 0.15;
+const OUTSIDE: f64 = 85.0;
+/// A label within this distance of the display's upper edge would be struck through by it.
+const EDGE: f64 = 24.0;
+/// Longest line of a label of contents, in characters.
+const LINE: usize = 20;
 /// Largest number of items of a recipe that is shown.
 const MOST_ITEMS: usize = 6;
 
@@ -43,19 +49,12 @@ pub fn fixed_places(session: &Session) -> Vec<EntityUpdate> {
     let whole = kitchen::DisplayArea { x: 0.0, y: 0.0, w: 1.0, h: 1.0 };
     let named = |on, words: &str, colour| {
         let SceneArea { left, top, width, .. } = area(kitchen, on, colour);
-        words_at([left + width / 2.0, top - ABOVE], words, colour)
+        words_at([left + width / 2.0, above(top)], words, colour)
     };
-    let name = |(index, location): (usize, &Location)| {
-        // The name has the colour of the location's curves.
-        let colour = entity_content::of_aspect(AspectId::of_location(LocationId(index as u8)));
-        named(location.display, &location.label(), colour)
-    };
+    let name = |location: &Location| named(location.display, &location.label(), entity_content::FRAME);
     let mut rows = vec![
         EntityUpdate::new("kitchen/display", EntityData::Areas(vec![area(kitchen, whole, entity_content::FRAME)])),
-        EntityUpdate::new(
-            "kitchen/names",
-            EntityData::Labels(kitchen.locations.iter().enumerate().map(name).collect()),
-        ),
+        EntityUpdate::new("kitchen/names", EntityData::Labels(kitchen.locations.iter().map(name).collect())),
         EntityUpdate::new(
             "human/gaze",
             EntityData::SightRadius(session.spec.human.perception.radius_m() * per_metre(kitchen)),
@@ -87,12 +86,23 @@ pub fn fixed_places(session: &Session) -> Vec<EntityUpdate> {
     rows
 }
 
-/// The name of a storage, beside its area towards the middle of the display: storages lie one above the other.
+/// Where a label above a place begins whose top is there: not on the display's edge.
+fn above(top: f64) -> f64 {
+    if top - ABOVE < EDGE { -ABOVE - EDGE } else { top - ABOVE }
+}
+
+/// The name of a storage beside the display; beside the storage, if it is far from the display's edges: storages lie one
+/// above the other, and contents of hands beside them.
 fn beside(kitchen: &Kitchen, storage: &IngredientStorage) -> SceneLabel {
     let colour = entity_content::agent_colour(storage.agent);
     let SceneArea { left, top, width, height, .. } = area(kitchen, storage.display, colour);
     let is_left = left + width / 2.0 < WIDE / 2.0;
-    let x = if is_left { left + width + BESIDE } else { left - BESIDE };
+    let x = match is_left {
+        true if left < WIDE * AT_EDGE => -OUTSIDE,
+        true => left + width + BESIDE,
+        false if left + width > WIDE * (1.0 - AT_EDGE) => WIDE + OUTSIDE,
+        false => left - BESIDE,
+    };
     words_at([x, top + height / 2.0 - ABOVE / 2.0], &storage.label, colour)
 }
 
@@ -124,13 +134,13 @@ fn content(kitchen: &Kitchen, before: Option<State>, state: State, id: LocationI
     let colour = match location.kind {
         _ if shown.is_empty() => entity_content::FRAME,
         LocationKind::Hand(agent) => entity_content::agent_colour(agent),
-        _ => entity_content::FULL,
+        _ => entity_content::CONTENT,
     };
     let entity = format!("kitchen/{}", slug(&location.name));
     let on = area(kitchen, location.display, colour);
     // Not below the display's edge.
     let lowest = kitchen.display_m[1] * per_metre(kitchen) - ABOVE;
-    let below = words_at([on.left + on.width / 2.0, (on.top + on.height).min(lowest)], words, colour);
+    let below = words_at([on.left + on.width / 2.0, (on.top + on.height).min(lowest)], &in_lines(words), colour);
     let label = EntityData::Labels(if words.is_empty() { Vec::new() } else { vec![below] });
     let mut rows = vec![
         EntityUpdate::new(&entity, EntityData::Areas(vec![on.clone()])),
@@ -147,6 +157,24 @@ fn content(kitchen: &Kitchen, before: Option<State>, state: State, id: LocationI
     let were = before.map_or(0, |before| self::shown(kitchen, before, id).len());
     rows.extend(pictured(&format!("{entity}/items"), &shown, &places, were));
     rows
+}
+
+/// A stack's words in lines, "cooked rice + nori" above "+ cut shrimp": beside hands lie other things.
+fn in_lines(words: &str) -> String {
+    let (mut lines, mut length) = (String::new(), 0);
+    for (nth, item) in words.split(" + ").enumerate() {
+        let letters = item.chars().count() + 3;
+        if length > 0 && length + letters > LINE {
+            lines += "\n";
+            length = 0;
+        } else if nth > 0 {
+            lines += " ";
+        }
+        lines += if nth > 0 { "+ " } else { "" };
+        lines += item;
+        length += letters;
+    }
+    lines
 }
 
 /// Pictures of contents at these places, in entities with numbers; of entities that showed one before, `were` in all, the
@@ -211,7 +239,7 @@ pub fn shown_signal(session: &Session) -> Vec<EntityUpdate> {
     };
     // Above the location's name.
     let words_for = |words: &str| {
-        vec![words_at([inner.left + inner.width / 2.0, inner.top - 2.0 * ABOVE], words, entity_content::SIGNAL)]
+        vec![words_at([inner.left + inner.width / 2.0, above(inner.top) - ABOVE], words, entity_content::SIGNAL)]
     };
     let (Signal::ShowRecipe(_), OrderContent::Dish(dish)) = (signal, session.state.order(location)) else {
         return rows(vec![outer], words_for("look here"), &[], &[]);

@@ -4,7 +4,7 @@
 use nalgebra::Isometry3;
 
 use tomcom_arm::kinematics::CollisionSolid;
-use tomcom_core::kitchen::{Agent, AspectId};
+use tomcom_core::kitchen::Agent;
 
 /// New content of one entity in Rerun's scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -99,11 +99,17 @@ pub struct ScenePoint {
     pub colour: SceneColour,
 }
 
-/// Name and colour of a time series.
+/// Name and colour of a time series; what is `None` stays as it is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SeriesStyle {
-    pub name: String,
-    pub colour: SceneColour,
+    pub name: Option<String>,
+    pub colour: Option<SceneColour>,
+}
+
+impl SeriesStyle {
+    pub fn new(name: impl Into<String>, colour: SceneColour) -> SeriesStyle {
+        SeriesStyle { name: Some(name.into()), colour: Some(colour) }
+    }
 }
 
 /// Shape of the marks of a time series.
@@ -134,24 +140,23 @@ pub type SceneColour = [u8; 4];
 
 /// Colour of the display's outline, and of locations without content.
 pub const FRAME: SceneColour = [115, 121, 132, 255];
-/// Colour of locations with content.
-pub const FULL: SceneColour = [0, 136, 126, 255];
-/// Colour of the human and the human's presses, as on the participant's page.
-pub const HUMAN: SceneColour = [179, 101, 43, 255];
+/// Colour of the names of what lies in a place.
+pub const CONTENT: SceneColour = [179, 101, 43, 255];
+/// Colour of the human and the human's presses. Those of the human, the robot, signals, gaze, errors and false beliefs are
+/// as on the console.
+pub const HUMAN: SceneColour = [0, 136, 126, 255];
 /// Colour of the human's hand and forearm.
 pub const SKIN: SceneColour = [222, 170, 136, 255];
-/// Colour of the robot and its presses, as on the participant's page.
+/// Colour of the robot and its presses.
 pub const ROBOT: SceneColour = [77, 124, 176, 255];
-/// Colour of signals, as on the participant's page.
-pub const SIGNAL: SceneColour = [199, 76, 136, 255];
-/// Colour of usable gaze samples.
-pub const GAZE: SceneColour = [236, 184, 0, 255];
-/// Colour of signals that the wizard sends.
-pub const WIZARD: SceneColour = [160, 88, 205, 255];
-/// Colour of signals that the assistant recommends or sends.
-pub const ASSISTANT: SceneColour = [29, 138, 80, 255];
+/// Colour of signals, of advice, and of what the wizard does.
+pub const SIGNAL: SceneColour = [160, 88, 205, 255];
+/// Colour of usable gaze samples and of looks.
+pub const GAZE: SceneColour = [52, 138, 62, 255];
 /// Colour of the human's errors and of stops of the arm.
 pub const ERROR: SceneColour = [223, 57, 57, 255];
+/// Colour of false beliefs.
+pub const FALSE: SceneColour = [152, 110, 0, 255];
 /// Colour of less important curves and texts, and of gaze samples that the belief filter cannot use.
 pub const QUIET: SceneColour = [116, 121, 131, 255];
 /// Colour of the table.
@@ -170,18 +175,15 @@ pub fn agent_colour(agent: Agent) -> SceneColour {
     }
 }
 
-/// Colours of aspects, neighbours far apart.
-const ASPECTS: [u32; 24] = [
-    0xe72f16, 0x5970e0, 0x448908, 0xc14ba4, 0x088781, 0x937438, 0x8458ff, 0x33893a, 0xed1745, 0x457cb2, 0x698207,
-    0xb74bc2, 0x088a58, 0xaf6643, 0x6563ff, 0x488732, 0xe51688, 0x368391, 0x8a7908, 0xa055d8, 0x098c2d, 0xcb5051,
-    0x3f6cff, 0x628330,
+/// Colours of the curves of one plot.
+pub const CURVES: [SceneColour; 6] = [
+    [63, 108, 255, 255],
+    [179, 101, 43, 255],
+    [68, 137, 8, 255],
+    [229, 22, 136, 255],
+    [8, 135, 129, 255],
+    [160, 85, 216, 255],
 ];
-
-/// The colour of an aspect's name and curves.
-pub fn of_aspect(aspect: AspectId) -> SceneColour {
-    let [_, red, green, blue] = ASPECTS[aspect.index() % ASPECTS.len()].to_be_bytes();
-    [red, green, blue, 255]
-}
 
 #[cfg(test)]
 mod tests {
@@ -189,8 +191,8 @@ mod tests {
 
     #[test]
     fn texts_can_be_read_on_black_and_on_white() {
-        let named = [FRAME, FULL, HUMAN, ROBOT, SIGNAL, WIZARD, ASSISTANT, ERROR, QUIET];
-        for colour in named.into_iter().chain((0..24).map(|nth| of_aspect(AspectId(nth)))) {
+        let named = [FRAME, CONTENT, HUMAN, ROBOT, SIGNAL, GAZE, ERROR, FALSE, QUIET];
+        for colour in named.into_iter().chain(CURVES) {
             let light = |part: u8| ((f64::from(part) / 255.0 + 0.055) / 1.055).powf(2.4);
             let [red, green, blue, _] = colour.map(light);
             let luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue;

@@ -5,7 +5,7 @@ use super::{EntityUpdate, moment_on_clock};
 use tomcom_core::communication::offer::{OfferCloseReason, OfferedAdvice};
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::communication::{Sender, Signal, signals};
-use tomcom_core::kitchen::{Agent, AspectId};
+use tomcom_core::kitchen::Agent;
 use tomcom_core::measures::JudgedPress;
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::history::error_reasons::ExplainedError;
@@ -18,6 +18,9 @@ use tomcom_session::{Event, Session, TimelineEntry, TimelineEvent, TimestampedEv
 const ERROR_MARKS: &str = "human/errors/marks";
 /// Path of the line at the cost of communication, in the plot of net benefits.
 const COST_LINE: &str = "assistant/benefit/cost_line";
+
+/// Path of the marks of the signals that were sent, at their value, in the plot of net benefits.
+const SENT_MARKS: &str = "assistant/benefit/sent";
 
 /// Path of the page of all signals, and its text without any.
 const SIGNAL_PAGE: &str = "signals/page";
@@ -35,21 +38,19 @@ fn benefit(signal: &Signal) -> String {
 pub fn fixed(session: &Session) -> Vec<EntityUpdate> {
     let (kitchen, assistant) = (&session.kitchen, &session.spec.assistant);
     let line = |entity: String, name: String, colour: SceneColour| {
-        EntityUpdate::new(entity, EntityData::Line(SeriesStyle { name, colour }))
+        EntityUpdate::new(entity, EntityData::Line(SeriesStyle::new(name, colour)))
     };
     let mut rows: Vec<EntityUpdate> = signals(kitchen, session.spec.highlights(kitchen))
         .iter()
-        .map(|(_, signal)| {
-            let place = signal.location(kitchen);
-            let colour =
-                place.map_or(entity_content::QUIET, |place| entity_content::of_aspect(AspectId::of_location(place)));
-            line(benefit(signal), wording::signal(signal), colour)
-        })
+        .zip(entity_content::CURVES.into_iter().cycle())
+        .map(|((_, signal), colour)| line(benefit(signal), wording::signal(signal), colour))
         .collect();
     let worth = format!("worth its cost ({}) above this line", assistant.price());
     rows.push(line(COST_LINE.to_string(), worth, entity_content::SIGNAL));
-    let marks = SeriesStyle { name: "errors".to_string(), colour: entity_content::ERROR };
+    let marks = SeriesStyle::new("errors", entity_content::ERROR);
     rows.push(EntityUpdate::new(ERROR_MARKS, EntityData::Marks(marks, MarkShape::Cross)));
+    let sent = SeriesStyle::new("signals that were sent", entity_content::SIGNAL);
+    rows.push(EntityUpdate::new(SENT_MARKS, EntityData::Marks(sent, MarkShape::Diamond)));
     rows.push(EntityUpdate::new(SIGNAL_PAGE, EntityData::Page(NO_SIGNAL.to_string())));
     rows
 }
@@ -115,14 +116,14 @@ pub fn entry(
         TimelineEvent::Noted(Event::SignalShown { by, .. }) => {
             let record = follower.signals.shown.iter().rfind(|shown| shown.time == entry.time);
             let told = record.map_or(text, |record| format!("signal: {}", signal_words::sent(follower, record)));
-            let (entity, colour) = match by {
-                Sender::Wizard => ("wizard/signals", entity_content::WIZARD),
-                Sender::Assistant => ("assistant/signals", entity_content::ASSISTANT),
+            let entity = match by {
+                Sender::Wizard => "wizard/signals",
+                Sender::Assistant => "assistant/signals",
             };
-            say(entity, SceneLogLevel::Info, told, colour)
+            say(entity, SceneLogLevel::Info, told, entity_content::SIGNAL)
         }
         TimelineEvent::Noted(Event::SignalEnded { .. }) => {
-            say("wizard/signals", SceneLogLevel::Warning, text, entity_content::WIZARD)
+            say("wizard/signals", SceneLogLevel::Warning, text, entity_content::SIGNAL)
         }
         TimelineEvent::Noted(Event::RobotSafety { .. } | Event::RobotStage { .. }) => {
             say("robot/events", SceneLogLevel::Error, text, entity_content::ERROR)
@@ -130,7 +131,7 @@ pub fn entry(
         TimelineEvent::Noted(Event::RobotTouched { .. }) => {
             say("robot/events", SceneLogLevel::Warning, text, entity_content::ROBOT)
         }
-        _ if who == "wizard" || who == "note" => say("wizard/hands", SceneLogLevel::Info, text, entity_content::WIZARD),
+        _ if who == "wizard" || who == "note" => say("wizard/hands", SceneLogLevel::Info, text, entity_content::SIGNAL),
         _ => say("trial/events", SceneLogLevel::Info, text, entity_content::QUIET),
     }
 }
@@ -188,9 +189,13 @@ impl AdviceScene {
         over.iter().flat_map(ends).collect()
     }
 
-    /// A signal was sent: what it would save is past.
-    pub fn sent(&mut self, sent: &Signal) -> Vec<EntityUpdate> {
-        self.keep(|signal| signal != sent)
+    /// A signal was sent: its value by the last advice is marked, and what it would save is past.
+    pub fn sent(&mut self, sent: &Signal, follower: &SessionFollower) -> Vec<EntityUpdate> {
+        let mut rows = self.keep(|signal| signal != sent);
+        let worth =
+            follower.signals.shown.iter().rfind(|shown| shown.signal == *sent).and_then(|one| one.worth.as_ref());
+        rows.extend(worth.map(|worth| EntityUpdate::new(SENT_MARKS, EntityData::Value(worth.net))));
+        rows
     }
 
     /// The trial is over.
@@ -214,7 +219,7 @@ impl AdviceScene {
         rows.push(EntityUpdate::new(COST_LINE, EntityData::Value(0.0)));
         if !told.is_empty() {
             let text = format!("assistant {told}");
-            rows.push(say("assistant/advice", SceneLogLevel::Info, text, entity_content::ASSISTANT));
+            rows.push(say("assistant/advice", SceneLogLevel::Info, text, entity_content::SIGNAL));
         }
         rows
     }
@@ -281,9 +286,9 @@ pub fn advised(session: &Session, advice: &Recommendation) -> String {
 pub fn offer_opened(offer: &OfferedAdvice) -> EntityUpdate {
     let unseen = if offer.visible { "" } else { " (not visible to a wizard)" };
     let text = format!("offer to the wizard: {}{unseen}", wording::offered(&offer.what));
-    say("assistant/offers", SceneLogLevel::Info, text, entity_content::ASSISTANT)
+    say("assistant/offers", SceneLogLevel::Info, text, entity_content::SIGNAL)
 }
 
 pub fn offer_closed(reason: OfferCloseReason) -> EntityUpdate {
-    say("assistant/offers", SceneLogLevel::Info, format!("offer closes: {}", reason.words()), entity_content::ASSISTANT)
+    say("assistant/offers", SceneLogLevel::Info, format!("offer closes: {}", reason.words()), entity_content::SIGNAL)
 }

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use super::entity_content::{self, EntityData, EntityUpdate, SceneColour, SceneLogLevel};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::MIN_CONFIDENCE;
-use tomcom_core::kitchen::{AspectId, LocationId};
+use tomcom_core::kitchen::LocationId;
 use tomcom_session::{Event, Session};
 
 /// Path of the lane with the places that the participant looks at.
@@ -32,7 +32,7 @@ enum LookedAt {
 impl LookedAt {
     fn now(session: &Session) -> LookedAt {
         let (gaze, kitchen) = (&session.gaze, &session.kitchen);
-        if gaze.samples == 0 || session.is_frozen() {
+        if gaze.samples == 0 || session.is_frozen() || session.is_trial_over() {
             return LookedAt::Nothing;
         }
         if session.gaze_hz(session.time).is_none() {
@@ -70,12 +70,8 @@ impl LookedAt {
         matches!(self, LookedAt::Place(_) | LookedAt::Storage(_))
     }
 
-    fn colour(self, session: &Session) -> SceneColour {
-        match self {
-            LookedAt::Place(place) => entity_content::of_aspect(AspectId::of_location(place)),
-            LookedAt::Storage(index) => entity_content::agent_colour(session.kitchen.storages[index].agent),
-            _ => entity_content::QUIET,
-        }
+    fn colour(self) -> SceneColour {
+        if self.is_place() { entity_content::GAZE } else { entity_content::QUIET }
     }
 }
 
@@ -102,7 +98,7 @@ impl LookScene {
         self.at = at;
         // The bar of what is between places is a gap.
         let words = if at == LookedAt::Between { String::new() } else { at.words(session) };
-        vec![EntityUpdate::new(LOOKS, EntityData::State(words, at.colour(session)))]
+        vec![EntityUpdate::new(LOOKS, EntityData::State(words, at.colour()))]
     }
 
     /// Ends the present look, and begins it anew.
@@ -134,7 +130,15 @@ impl LookScene {
     }
 }
 
+/// Looks at one place that follow each other are one.
 fn told<'a>(session: &Session, looks: impl Iterator<Item = &'a (LookedAt, f64)>) -> String {
-    let told = looks.map(|(at, lasted_s)| format!("{} {lasted_s:.1} s", at.words(session)));
+    let mut joined: Vec<(LookedAt, f64)> = Vec::new();
+    for &(at, lasted_s) in looks {
+        match joined.last_mut().filter(|last| last.0 == at) {
+            Some(last) => last.1 += lasted_s,
+            None => joined.push((at, lasted_s)),
+        }
+    }
+    let told = joined.iter().map(|(at, lasted_s)| format!("{} {lasted_s:.1} s", at.words(session)));
     told.collect::<Vec<_>>().join(", ")
 }

@@ -35,7 +35,7 @@ use tomcom_session::follower::SessionFollower;
 use tomcom_session::{Event, Session, TimestampedEvent, apply};
 
 /// Version of the scene's content and layout. A stream with another version is rebuilt from the log.
-pub const VERSION: u32 = 9;
+pub const VERSION: u32 = 10;
 
 /// A time on the trial's clock, in minutes, seconds and tenths. As on the console's clock, what is smaller is left out.
 pub fn moment_on_clock(time: SessionTime) -> String {
@@ -149,12 +149,13 @@ impl SessionScene {
             Event::Gaze(sample) => rows.push(entities::gaze(session, *sample)),
             Event::SignalShown { signal, .. } => {
                 rows.extend(entities::shown_signal(session));
-                rows.extend(self.advice.sent(signal));
+                rows.extend(self.advice.sent(signal, inputs.follower));
             }
             Event::SignalEnded { .. } => rows.extend(entities::shown_signal(session)),
             Event::TrialEnded { .. } | Event::TrialAborted { .. } | Event::SessionEnded => {
                 rows.extend(entities::shown_signal(session));
                 rows.extend(self.advice.ended());
+                rows.extend(self.belief.ended());
             }
             Event::Advised(advice) => {
                 self.belief.advice = happenings::advised(session, advice);

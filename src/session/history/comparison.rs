@@ -260,22 +260,17 @@ fn believed(kitchen: &Kitchen, known: &CommunicationContext) -> [String; 2] {
     let told = |&(index, held): &(usize, &AspectBeliefSnapshot)| {
         let aspect = &kitchen.aspects[index];
         let truth = kitchen.true_value(known.state, AspectId(index as u8));
-        let name = wording::location(&aspect.name);
-        let (believes, truth_label) = (&aspect.wordings[usize::from(held.believes)], &aspect.wordings[truth]);
-        match usize::from(held.believes) == truth {
-            true => format!("{name}: most probably {truth_label}, but with a probability of only {:.2}", held.p_truth),
-            false => {
-                format!("{name}: thinks {believes} (probability {:.2}), is {truth_label} ({:.2})", held.p, held.p_truth)
-            }
-        }
+        let name = wording::aspect(kitchen, known.state, AspectId(index as u8));
+        let (wrong, truth) = (&aspect.wordings[usize::from(held.wrong)], &aspect.wordings[truth]);
+        format!("{name}: thinks {wrong} (probability {:.2}), is {truth} ({:.2})", held.p_wrong, held.p_truth)
     };
     let doubted = |&(index, held): &(usize, &AspectBeliefSnapshot)| {
-        format!("{} {:.2}", wording::location(&kitchen.aspects[index].name), held.p_truth)
+        format!("{} {:.2}", wording::aspect(kitchen, known.state, AspectId(index as u8)), held.p_truth)
     };
     let list = |told: Vec<String>| if told.is_empty() { "none".to_string() } else { told.join("; ") };
     [
         format!(
-            "false beliefs, by the estimate without the signal just sent: {}",
+            "false beliefs, by the estimate if that signal were not sent: {}",
             list(wrong.iter().take(4).map(told).collect())
         ),
         format!(

@@ -167,11 +167,10 @@ fn believes(kitchen: &Kitchen, belief: &RecordedBelief) -> String {
     let wrong = belief.aspects.iter().filter(|aspect| aspect.p_truth < FALSE_BELOW);
     let told = |aspect: &AspectBelief| format!("{} = {}", said(&aspect.aspect), kitchen.worded(&aspect.believes));
     let wrong: Vec<String> = wrong.map(told).collect();
-    // The cause that a simulated participant recorded for its press is shown, unless the participant recorded that the
-    // press follows from the true state ("as it is").
+    // Why a simulated participant presses so, unless that follows from the true state ("as it is").
     let cause = match belief.cause.as_str() {
         "as it is" => String::new(),
-        cause => format!(" ({})", said(&worded_cause(kitchen, cause))),
+        cause => format!("; reason: {}", said(&worded_cause(kitchen, cause))),
     };
     match wrong.is_empty() {
         true => format!("participant believes nothing wrong{cause}"),
@@ -351,8 +350,8 @@ pub fn stop_cause(force_n: Option<f64>, joint: Option<u8>) -> Option<String> {
     }
 }
 
-/// The cost of the press compared with the human's best press, and the cause where it is known: "costs 2 presses; cause:
-/// false belief about robot hand".
+/// The cost of the press compared with the human's best press, and the cause where it is known: "costs 2 presses; cause
+/// (simulated participant): false belief about robot hand".
 fn verdict_words(kitchen: &Kitchen, press: &JudgedPress) -> String {
     [Some(cost(press)), cause(kitchen, press)].into_iter().flatten().collect::<Vec<_>>().join("; ")
 }
@@ -361,17 +360,17 @@ pub(super) fn cost(press: &JudgedPress) -> String {
     format!("costs {}", count(press.verdict.excess.unsigned_abs(), "press", "presses"))
 }
 
+/// The cause, which follows from what a simulated participant recorded.
 pub(super) fn cause(kitchen: &Kitchen, press: &JudgedPress) -> Option<String> {
-    Some(match press.cause? {
-        ErrorCause::Slip => "cause: slip".to_string(),
-        ErrorCause::Planning => "cause: planning error".to_string(),
-        ErrorCause::Belief { target, with: None, .. } => {
-            format!("cause: false belief about {}", target.label(kitchen))
+    let because = match press.cause? {
+        ErrorCause::Slip => "slip".to_string(),
+        ErrorCause::Planning => "planning error".to_string(),
+        ErrorCause::Belief { target, with, .. } => {
+            let about: Vec<String> = [Some(target), with].into_iter().flatten().map(|one| one.label(kitchen)).collect();
+            format!("false belief about {}", about.join(" and "))
         }
-        ErrorCause::Belief { target, with: Some(other), .. } => {
-            format!("cause: false belief about {} and {}", target.label(kitchen), other.label(kitchen))
-        }
-    })
+    };
+    Some(format!("cause (simulated participant): {because}"))
 }
 
 pub fn protocol(event: &ProtocolEvent) -> String {

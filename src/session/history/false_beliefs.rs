@@ -1,5 +1,6 @@
 //! The false beliefs of the estimate as intervals of time: the one source for replays, the review and exports.
 
+use crate::history::wording;
 use crate::{Session, TimestampedEvent, TrialPhase};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{AspectId, Kitchen};
@@ -23,9 +24,16 @@ pub struct EstimatedFalseBelief {
     pub thinks: usize,
     /// Index of the true value.
     pub truth: usize,
+    /// What it is about, in words: "recipe of tuna maki (order 1)".
+    pub about: String,
 }
 
 impl EstimatedFalseBelief {
+    /// How long it lasted, or has lasted so far, on the trial's clock.
+    pub fn lasted_s(&self, session: &Session) -> f64 {
+        session.age(self.began, self.ended.unwrap_or(session.time)).as_secs_f64()
+    }
+
     /// What is believed and what is true, in words.
     pub fn contents<'a>(&self, kitchen: &'a Kitchen) -> [&'a str; 2] {
         [self.thinks, self.truth].map(|value| kitchen.aspects[self.aspect.index()].wordings[value].as_str())
@@ -71,7 +79,8 @@ impl EstimatedFalseBeliefs {
             }
             if let Some((thinks, truth)) = held {
                 self.last[index] = Some(self.all.len());
-                self.all.push(EstimatedFalseBelief { aspect, began: now, ended: None, thinks, truth });
+                let about = wording::aspect(kitchen, state, aspect);
+                self.all.push(EstimatedFalseBelief { aspect, began: now, ended: None, thinks, truth, about });
             }
         }
     }

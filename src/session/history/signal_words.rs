@@ -4,9 +4,13 @@ use crate::follower::SessionFollower;
 use crate::history::wording;
 use crate::wizard_log::{ShownSignalRecord, signal_verdicts};
 use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::Sender;
 use tomcom_core::communication::concept::BenefitUnit;
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption, SignalReason};
 use tomcom_core::kitchen::{AspectId, Kitchen};
+
+/// A wrong belief below this probability is no reason to tell of a signal that a wizard chose.
+const LEAST_SAID: f64 = 0.2;
 
 /// "saves 0.43 presses, +0.18 after the cost of a signal".
 pub fn worth(unit: BenefitUnit, option: &SignalOption) -> String {
@@ -42,9 +46,15 @@ pub fn advised(kitchen: &Kitchen, unit: BenefitUnit, advice: &Recommendation) ->
 pub fn sent(follower: &SessionFollower, shown: &ShownSignalRecord) -> String {
     let session = &follower.session;
     let unit = session.spec.assistant.concept.name().unit();
+    // An assistant's reason for what a wizard sent is told if the assistant gave it some weight.
+    let is_said = |why: &&SignalReason| shown.by == Sender::Assistant || why.p_believes >= LEAST_SAID;
+    let why = reason(&session.kitchen, shown.reason.as_ref().filter(is_said), shown.words.as_ref());
     let parts = [
         Some(format!("{}, by the {}", wording::signal(&shown.signal), wording::sender(shown.by))),
-        reason(&session.kitchen, shown.reason.as_ref(), shown.words.as_ref()),
+        why.map(|why| match shown.by {
+            Sender::Assistant => why,
+            Sender::Wizard => format!("the assistant would have said: {why}"),
+        }),
         shown.worth.as_ref().map(|option| worth(unit, option)),
     ];
     parts.into_iter().flatten().collect::<Vec<_>>().join("; ")
@@ -62,7 +72,7 @@ pub fn outcome(follower: &SessionFollower, nth: usize) -> String {
         None => has_place.then(|| "not looked at".to_string()),
     };
     let verdict = signal_verdicts(follower).and_then(|verdicts| verdicts.get(nth).copied());
-    let judged = verdict.map(|verdict| format!("judged {}", verdict.name()));
+    let judged = verdict.map(|verdict| format!("judged {} by the participant's own beliefs", verdict.name()));
     [seen, belief(follower, shown), judged].into_iter().flatten().collect::<Vec<_>>().join("; ")
 }
 

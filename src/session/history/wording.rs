@@ -9,7 +9,9 @@ use tomcom_core::communication::recommendation::SignalReason;
 use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::gaze::quality::DroppedInputCounts;
 use tomcom_core::kitchen::rules::NoEffectReason;
-use tomcom_core::kitchen::{Agent, ButtonAction, ButtonId, Dish, Kitchen, LocationId, OrderContent, State};
+use tomcom_core::kitchen::{
+    Agent, AspectId, AspectKind, ButtonAction, ButtonId, Dish, Kitchen, LocationId, OrderContent, State,
+};
 use tomcom_core::measures::raters::{ErrorCauseCode, ErrorCauseKind};
 use tomcom_core::robot::AbortReason;
 use tomcom_core::robot::ArmPhase;
@@ -45,6 +47,15 @@ pub fn idle(reason: IdleReason, waits_for: &[impl AsRef<str>], gave_up: Option<A
 
 pub fn location(name: &str) -> String {
     name.replace('_', " ")
+}
+
+/// What a belief is about: "cooking pot", "recipe of tuna maki (order 1)"; without an order if nobody wants the dish.
+pub fn aspect(kitchen: &Kitchen, state: State, aspect: AspectId) -> String {
+    let about = &kitchen.aspects[aspect.index()];
+    let mut wanted = kitchen.wanted(state);
+    let order = wanted.find(|&(_, dish)| about.kind == AspectKind::Recipe(dish)).map(|(order, _)| order);
+    let order = order.map_or(String::new(), |order| format!(" ({})", kitchen.location(order).label()));
+    format!("{}{order}", location(&about.name))
 }
 
 /// "slip", "wrong about cooking pot".

@@ -408,7 +408,9 @@ pub fn read_header(path: &Path, text: &str) -> FileResult<LogHeader> {
         Some(version) if version == u64::from(VERSION) => {}
         version => {
             let found = version.map_or("no format version".to_string(), |version| format!("format version {version}"));
-            let remedy = format!("format version {VERSION}, or the tomcom that wrote the log");
+            let program = value.get("program").and_then(|program| program.as_str());
+            let program = program.map_or(String::new(), |program| format!(" {program}"));
+            let remedy = format!("format version {VERSION}, or the tomcom{program} that wrote the log");
             return Err(wrong(0, found, remedy));
         }
     }

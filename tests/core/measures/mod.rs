@@ -94,16 +94,22 @@ fn check(layout: &str, there: &[&str], falsely: &[&str], pressed: &str, why: &[&
 #[test]
 fn a_confused_recipe_leads_to_the_wrong_ingredient() {
     let falsely = ["recipe of shrimp nigiri: rice shaped + nori + crab cut"];
-    check("sushi", &["order_1: shrimp nigiri"], &falsely, "take crab", &["shrimp nigiri of order 1"]);
+    check("sushi", &["order_1: shrimp nigiri"], &falsely, "take crab", &["recipe of shrimp nigiri (order 1)"]);
     let falsely = ["recipe of garden burger: light bun + cheese + soy grilled + tomato sliced"];
-    check("burger", &["order: garden burger"], &falsely, "take tomato", &["garden burger of order"]);
+    check("burger", &["order: garden burger"], &falsely, "take tomato", &["recipe of garden burger (order)"]);
 }
 
 #[test]
 fn an_order_that_was_misread_counts_as_one_target_with_its_recipe() {
-    check("sushi", &["order_1: crab maki"], &["order_1: shrimp nigiri"], "take shrimp", &["crab maki of order 1"]);
+    check(
+        "sushi",
+        &["order_1: crab maki"],
+        &["order_1: shrimp nigiri"],
+        "take shrimp",
+        &["recipe of crab maki (order 1)"],
+    );
     let falsely = ["order: classic burger"];
-    check("burger", &["order: garden burger"], &falsely, "take tomato", &["garden burger of order"]);
+    check("burger", &["order: garden burger"], &falsely, "take tomato", &["recipe of garden burger (order)"]);
 }
 
 #[test]
@@ -127,7 +133,7 @@ fn what_is_done_already_is_done_again_by_those_who_did_not_see_it() {
 fn two_false_beliefs_that_each_suffice_are_named_together() {
     let there = ["order_1: salmon nigiri", "order_2: salmon maki"];
     let falsely = ["recipe of salmon nigiri: rice shaped + nori + crab cut", "recipe of salmon maki: crab maki"];
-    let why = ["salmon maki of order 2", "salmon nigiri of order 1"];
+    let why = ["recipe of salmon maki (order 2)", "recipe of salmon nigiri (order 1)"];
     check("sushi", &there, &falsely, "take crab", &why);
     // Mending one of them alone leaves a good reason to press.
     check("sushi", &there, &falsely[..1], "take crab", &why[1..]);

@@ -82,13 +82,15 @@ fn a_simulation_replaces_itself_and_no_other_recording() {
     // A recording of another format: what other commands say about it, with the remedy.
     let text = String::from_utf8(before).expect("UTF-8").replacen("\"version\":3", "\"version\":2", 1);
     fs::write(&log, text).expect("written");
-    let remedy = "found format version 2; wanted: format version 3, or the tomcom that wrote the log";
+    let program = env!("CARGO_PKG_VERSION");
+    let remedy =
+        format!("found format version 2; wanted: format version 3, or the tomcom {program} that wrote the log");
     for (command, code) in [(&simulate("sessions/default.toml")[..], 1), (&["list", out], 0)] {
         let output = check(command, code);
         let told =
             [output.stderr, output.stdout].map(|text| String::from_utf8_lossy(&text).replace("\n", " ")).concat();
         let told = told.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ");
-        assert!(told.contains(remedy), "{told}");
+        assert!(told.contains(&remedy), "{told}");
     }
 }
 

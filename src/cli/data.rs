@@ -21,24 +21,28 @@ const MAX_ANSWER: u64 = 1 << 12;
 
 /// Prints raters' codes of errors, their agreement, and where they disagree.
 ///
-/// Also the codes on which two raters agreed afterwards. Can import codes from a table, or export them.
+/// Also the codes on which two raters agreed afterwards. The codes of R1 stand in codes-R1.csv in the folder of each recording.
+/// --export gathers the codes of all raters and recordings in one table; --import takes such a table back, for example
+/// beside another copy of the recordings.
 #[derive(Debug, Args)]
 #[command(after_help = "tomcom replay RECORDING --rater R1 is where errors are coded;\n\
                   tomcom replay RECORDING --settle R1 R2 is where two raters settle what they coded differently.\n\
                   Examples: tomcom codes sessions/2026-03-14-P07-1\n          \
-                  tomcom codes sessions/*-P*-* --export codes.csv\nMore: docs/raters.md")]
+                  tomcom codes sessions/*-P*-* --export codes.csv\n          \
+                  tomcom codes copy/*-P*-* --import codes.csv\nMore: docs/raters.md")]
 pub(super) struct CodesArgs {
     /// The folders of recordings, or their events.jsonl; or folders with recordings in them.
     #[arg(required = true, value_name = "RECORDING")]
     recordings: Vec<PathBuf>,
-    /// Import codes from this table, with the columns recording, rater (R1+R2: a consensus), press, cause, aspect; or from
-    /// a file of ELAN (.eaf) or BORIS (.boris) that tomcom export wrote and raters annotated.
+    /// Import codes from this file: a table that --export wrote, or another one with the columns recording, rater (R1+R2: a
+    /// consensus), press, cause, aspect; or a file of ELAN (.eaf) or BORIS (.boris) that tomcom export wrote and raters
+    /// annotated.
     #[arg(long, value_name = "FILE")]
     import: Option<PathBuf>,
     /// Import codes of raters who have no codes yet, and codes that change others, without asking.
     #[arg(long, requires = "import")]
     yes: bool,
-    /// Export all codes to a table with these columns.
+    /// Export the codes of all raters and recordings to this table, which is made anew, with these columns.
     #[arg(long, value_name = "FILE")]
     export: Option<PathBuf>,
     /// Output format.
@@ -48,6 +52,17 @@ pub(super) struct CodesArgs {
 
 pub(super) fn codes(args: &CodesArgs) -> Result<(), Failure> {
     args.recordings.iter().try_for_each(|path| exists(path))?;
+    let is_codes = |path: &&PathBuf| {
+        path.is_file() && path.extension().is_some_and(|end| ["csv", "eaf", "boris"].iter().any(|codes| end == *codes))
+    };
+    if let Some(file) = args.recordings.iter().find(is_codes) {
+        let help = format!("tomcom codes RECORDING --import {}", file.display());
+        return Err(Failure::Wrong(miette::miette!(
+            help = help,
+            "{}: found a file with codes, wanted a recording",
+            file.display()
+        )));
+    }
     let chosen = gathered(&args.recordings)?.paths;
     let bar = progress(chosen.len() as u64, "recordings");
     let read = tomcom_study::parallel::each(&chosen, |recording| CodedRecording::open(recording), || bar.inc(1));

@@ -7,7 +7,7 @@ use super::actions::{act, differ, send};
 use super::chord::KeyChord;
 use super::console_model::{ComparisonAction, ConsoleCommand, ConsoleModel, Dialog, NoticeLevel, PressedKey};
 use super::form::{self, SheetKey, sheet};
-use super::key_action::{KeyAction, KeyLayer, ManualAction, ViewAction};
+use super::key_action::{KeyAction, KeyLayer, ManualAction, RaterAction, ViewAction};
 use super::lists::{self, ListCursor, ListReply};
 use super::possible::acts_on_sheet;
 use super::view::dialog::report_rest;
@@ -68,6 +68,7 @@ pub(super) fn press(
         _ if model.dialog == Some(Dialog::Calibration) => {
             gaze_check::answer(model, session, chord.code, touch == KeyPressKind::Press)
         }
+        Some(action) if touch == KeyPressKind::Held && goes_on(model, session, &action) => act(model, session, action),
         // Digits of a number follow one another quickly: the number 11 is two presses, not a held key.
         _ if touch == KeyPressKind::Held && !probe_keys::takes_digit(model, session, code) => {
             if model.dialog.is_none() || reopens(model, action.as_ref()) {
@@ -200,6 +201,16 @@ fn on_sheet(
             None
         }
     }
+}
+
+/// Whether the action goes on while its key is held: it only moves about in the list of errors or in a panel.
+fn goes_on(model: &ConsoleModel, session: &Session, action: &KeyAction) -> bool {
+    let moves = matches!(
+        action,
+        KeyAction::Rate(RaterAction::ChooseLater | RaterAction::ChooseEarlier)
+            | KeyAction::Look(ViewAction::Back | ViewAction::Forward | ViewAction::Earlier | ViewAction::Later)
+    );
+    moves && model.dialog.is_none() && (model.playback.is_some() || sheet(session).is_none())
 }
 
 /// Whether the key is the one that opened the question on the screen, whether to quit or to end the trial.

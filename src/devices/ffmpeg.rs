@@ -1,5 +1,6 @@
 //! The program ffmpeg, which decodes films and records cameras: what it says of frames and faults.
 
+use std::ffi::OsStr;
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Command, Stdio};
 
@@ -28,6 +29,19 @@ pub fn command() -> Command {
     command.args(["-nostdin", "-hide_banner", "-nostats", "-loglevel", "level+info"]);
     command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
     command
+}
+
+/// Length of a film in seconds, as its head tells it; `None` if ffmpeg is missing, or the film does not tell it.
+pub fn length_s(address: &OsStr) -> Option<f64> {
+    let told = command().args(["-protocol_whitelist", "file,pipe", "-i"]).arg(address).output().ok()?;
+    length_in(&String::from_utf8_lossy(&told.stderr))
+}
+
+fn length_in(said: &str) -> Option<f64> {
+    let time = said.lines().find_map(|line| line.strip_prefix("[info]   Duration: "))?.split(',').next()?;
+    let parts: Vec<f64> = time.split(':').map(|part| part.parse().ok()).collect::<Option<_>>()?;
+    let [hours, minutes, seconds] = parts[..] else { return None };
+    Some((hours * 60.0 + minutes) * 60.0 + seconds)
 }
 
 /// Reads ffmpeg's error output until it ends, or until `take` returns false.
@@ -70,7 +84,14 @@ fn fraction(base: &str) -> Option<(f64, f64)> {
 
 #[cfg(test)]
 mod tests {
-    use super::{FfmpegMessage, read_messages};
+    use super::{FfmpegMessage, length_in, read_messages};
+
+    #[test]
+    fn the_length_of_a_film_is_in_its_head() {
+        let said = |length: &str| format!("[info] Input #0, mov:\n[info]   Duration: {length}, start: 0.000000\n");
+        assert_eq!(length_in(&said("01:02:03.50")), Some(3723.5));
+        assert_eq!((length_in(&said("N/A")), length_in("")), (None, None));
+    }
 
     #[test]
     fn times_of_frames_are_exact_however_late_they_are() {

@@ -97,6 +97,8 @@ struct RecordedTimes {
     /// When the page drew its flashes, in seconds of session time.
     drawn_s: Vec<f64>,
     trial_start: Option<SessionTime>,
+    /// Where the trial ends; without an end of it, the recording does.
+    end: SessionTime,
     is_shown: bool,
 }
 
@@ -108,11 +110,14 @@ impl RecordedTimes {
             return Err(FileError::from_finding(recording, found, "a recording whose session is over".to_string()));
         }
         let (mut drawn_s, mut trial_start) = (Vec::new(), None);
+        let (mut trial_end, mut last) = (None, SessionTime::ZERO);
         let (mut began, mut gaze) = (Vec::new(), Vec::new());
         let is_pupil = log.session().spec.participant.gaze == GazeSource::Pupil;
         while let Some(line) = log.next_line()? {
+            last = line.stamped.time;
             match line.stamped.event {
-                Event::TrialStarted => trial_start = Some(line.stamped.time),
+                Event::TrialStarted => trial_start = Some(last),
+                Event::TrialEnded { .. } | Event::TrialAborted { .. } => trial_end = Some(last),
                 Event::Display(DisplayEvent::Drawn { at_ns, .. }) => drawn_s.push(at_ns.as_secs_f64()),
                 Event::Film(FilmEvent::Began { file, began_ns, .. }) => began.push((file, began_ns)),
                 Event::Gaze(GazeSample { device_ns: Some(device_ns), taken_ns: Some(taken), .. }) if is_pupil => {
@@ -123,7 +128,8 @@ impl RecordedTimes {
         }
         drawn_s.sort_by(f64::total_cmp);
         let is_shown = log.session().spec.display.flash;
-        Ok(RecordedTimes { folder: log.folder().to_path_buf(), began, gaze, drawn_s, trial_start, is_shown })
+        let (folder, end) = (log.folder().to_path_buf(), trial_end.unwrap_or(last));
+        Ok(RecordedTimes { folder, began, gaze, drawn_s, trial_start, end, is_shown })
     }
 
     /// The films in the folder that the program recorded; of a recording in parts, those of the last part.
@@ -235,6 +241,7 @@ fn aligned(
         }
         FilmAlignmentRequest::Offset(offset_s) => {
             (attached.by, attached.offset_s) = (FilmAlignmentSource::Offset, offset_s);
+            check_by_hand(&mut attached, recorded, film, &path)?;
         }
         FilmAlignmentRequest::TrialStart(film_s) => {
             let Some(start) = recorded.trial_start else {
@@ -244,9 +251,33 @@ fn aligned(
             };
             let offset_s = rounded(film_s - start.as_secs_f64(), 1e4);
             (attached.by, attached.offset_s) = (FilmAlignmentSource::TrialStart, offset_s);
+            check_by_hand(&mut attached, recorded, film, &path)?;
         }
     }
     Ok(attached)
+}
+
+/// Refuses a time by hand that puts nothing of the trial into the film, as far as the film tells its length.
+fn check_by_hand(
+    attached: &mut AttachedFilm,
+    recorded: &RecordedTimes,
+    film: &Path,
+    path: &Path,
+) -> Result<(), FilmError> {
+    let Some(length_s) = ffmpeg::length_s(&address(path)) else { return Ok(()) };
+    attached.length_s = Some(length_s);
+    let [start_s, end_s] = [recorded.trial_start.unwrap_or_default(), recorded.end].map(|time| attached.film_s(time));
+    if start_s < length_s && end_s > 0.0 {
+        return Ok(());
+    }
+    Err(FilmError::NotAligned {
+        film: film.to_path_buf(),
+        found: format!(
+            "a film of {length_s:.1} s, and a trial from {start_s:.1} s to {end_s:.1} s of it: nothing of the trial is in the film"
+        ),
+        remedy: "--at with the time in the film at which the trial starts, or --offset with that at which the session begins"
+            .to_string(),
+    })
 }
 
 fn set_by_flashes(attached: &mut AttachedFilm, found: &FilmAlignment) {

@@ -350,6 +350,13 @@ fn an_error_about_codes_names_the_row_that_is_wrong() {
         fs::write(&table, [head.as_bytes(), rows].concat()).expect("written");
         refused(&["codes", &recording, "--import", &table.display().to_string()], says);
     }
+    // Other files of a study in place of the table, and the table in place of the recording.
+    let log = Path::new(&recording).join("events.jsonl").display().to_string();
+    refused(&["codes", &recording, "--import", &log], "found a file that is no table of codes");
+    fs::write(&table, "rater,press,cause,aspect\nR1,7,slip,\n").expect("written");
+    let table = table.display().to_string();
+    refused(&["codes", &recording, "--import", &table], "found one rater's codes of one recording");
+    refused(&["codes", &table], &format!("tomcom codes RECORDING --import {table}"));
     assert!(!Path::new(&recording).join("codes-R1.csv").exists(), "nothing is taken of a table that is wrong");
 }
 

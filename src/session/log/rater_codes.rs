@@ -20,6 +20,11 @@ const COLUMNS: [&str; 4] = ["rater", "press", "cause", "aspect"];
 pub const EXPORT_COLUMNS: [&str; 5] = ["recording", "rater", "press", "cause", "aspect"];
 const KEEP_ONE: &str =
     "one file for each rater: compare the two, keep the codes that hold, and move the other file elsewhere";
+/// In bytes; the line with the columns of a table is much shorter.
+const LONGEST_HEAD: usize = 400;
+const EXPORTED: &str = "a table that tomcom codes RECORDING --export wrote, or an annotated .eaf or .boris file";
+const OWN_FILE: &str = "the table that tomcom codes RECORDING --export TABLE makes of such files; or put this file, with its name, into the \
+                        folder of its recording";
 const REMEDY: &str = "as many fields as the first line has";
 const SPREADSHEETS: [&str; 4] = [".xlsx", ".xls", ".ods", ".numbers"];
 
@@ -181,6 +186,15 @@ pub fn read_export(path: &Path) -> FileResult<(String, Vec<RaterCodeRow>)> {
     let bytes = read_bytes(path, MAX_TEXT);
     let bytes =
         bytes.map_err(|reason| FileError::unreadable(path, reason, "the path of a readable text file (UTF-8)"))?;
+    let head = overwrite::first_line(&bytes);
+    let wrong = |found: &str, remedy: &str| Err(FileError::from_finding(path, found.to_string(), remedy.to_string()));
+    if head == COLUMNS.join(",").as_bytes() {
+        return wrong("one rater's codes of one recording", OWN_FILE);
+    }
+    // Of a log or a film, no message can show a line.
+    if head.len() > LONGEST_HEAD {
+        return wrong("a file that is no table of codes", EXPORTED);
+    }
     let text = text_of(path, bytes)?;
     let row = |(line, before, press, code): ParsedRow| {
         let [recording, rater] = [before[0].clone(), before[1].clone()];

@@ -55,7 +55,7 @@ pub struct AttachedFilm {
     /// Duration of one frame; absent where the film was not decoded.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frame_ms: Option<f64>,
-    /// Absent where the film was not decoded.
+    /// Absent where nothing was known of it when the film was attached.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub length_s: Option<f64>,
     /// Where the films are from which this one was copied or converted; as [`AttachedFilm::file`].

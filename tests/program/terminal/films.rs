@@ -149,6 +149,13 @@ fn a_film_that_viewers_do_not_play_is_converted_and_the_copy_keeps_its_times() {
         .arg(&film);
     assert!(make.status().expect("ffmpeg").success());
     let [log, film] = [&recording, &film].map(|path| path.display().to_string());
+    // The trial is from 0.5 s to 228.7 s of the session.
+    for by_hand in [["--offset", "500"], ["--offset", "-300"], ["--at", "2.5"]] {
+        let told = video(&[&[&*log, &*film], &by_hand[..]].concat());
+        let words = String::from_utf8_lossy(&told.stderr).replace("\n  │ ", " ");
+        assert_eq!(told.status.code(), Some(2), "{by_hand:?}: {words}");
+        assert!(words.contains("found a film of 2.0 s, and a trial from"), "{words}");
+    }
     let done = video(&[&log, &film, "--offset", "-1.5"]);
     assert!(done.status.success(), "{done:?}");
     let told =

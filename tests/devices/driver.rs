@@ -376,7 +376,12 @@ fn a_button_that_closes_without_the_arm_is_a_press_of_the_participant() {
     };
     rehearsal.driver.step(&reading, 1e6);
     reading.inputs = 1 << shared.0;
-    let press = DriverAction::Tell(Box::new(Event::Press { agent: Agent::Human, button: shared.1, at_ns: None, button_box: false }));
+    let press = DriverAction::Tell(Box::new(Event::Press {
+        agent: Agent::Human,
+        button: shared.1,
+        at_ns: None,
+        button_box: false,
+    }));
     assert!(rehearsal.driver.step(&reading, 1e6).contains(&press));
     assert!(!rehearsal.driver.step(&reading, 1e6).contains(&press), "a held button is one press");
 }

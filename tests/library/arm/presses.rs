@@ -1,5 +1,7 @@
 //! The arm alone: presses, stops and faults; and the human hand beside it.
 
+use std::f64::consts::FRAC_PI_2;
+
 use nalgebra::Point3;
 use tomcom_arm::kinematics::SerialArm;
 use tomcom_arm::physics::CYCLE_S;
@@ -211,7 +213,7 @@ fn a_hand_is_at_its_button_when_it_presses_goes_back_and_keeps_off_the_arm() {
 }
 
 /// An emergency stop left the arm so, over a hand that reached for the assembly board.
-const OVER_THE_HAND: JointAngles = [-0.2018, -1.4533, 1.9836, -2.1011, -1.5708, 0.0];
+const OVER_THE_HAND: JointAngles = [-0.2018, -1.4533, 1.9836, -2.1011, -FRAC_PI_2, 0.0];
 
 #[test]
 fn a_hand_below_an_arm_that_stands_draws_back_and_does_not_wait_for_it() {

@@ -33,7 +33,7 @@ fn a_recording_of_another_plan_is_none_of_a_participant_of_the_frozen_one() {
     let code = &frozen.participants[2];
     assert_eq!(told, ["1 recording is of the plan \"another\""]);
     let check = PreregistrationCheck::new("0".to_string(), &frozen, &all, 0);
-    assert_eq!(check.to_come, [code.clone()]);
+    assert_eq!(check.to_come, std::slice::from_ref(code));
     assert!(check.words().ends_with(&format!("1 participant has no recording so far: {code}.")), "{}", check.words());
 }
 

@@ -109,7 +109,9 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
         Event::RobotStage { stage, found } => {
             session.robot.arm.stage = Some((*stage, found.clone()));
             let has_begun = matches!(session.phase, TrialPhase::Running | TrialPhase::Paused);
-            if *stage != ArmStage::Ready && has_begun && !session.robot.stopped {
+            // While the arm starts again, the wizard has let it go on.
+            let stops = matches!(stage, ArmStage::Lost | ArmStage::Off | ArmStage::Stopped);
+            if stops && has_begun && !session.robot.stopped {
                 session.robot.stopped = true;
                 session.robot.idle = None;
                 session.note_event(now, &stamped.event);

@@ -10,7 +10,7 @@ use crate::console::console_model::{ConsoleModel, FilmStatus, RecordingStatus, R
 use crate::console::probe_keys;
 use crate::console::text_columns::width;
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::robot::SafetyMode;
+use tomcom_core::robot::{ArmStage, SafetyMode};
 use tomcom_session::history::wording;
 use tomcom_session::settings::{Condition, GazeSource};
 use tomcom_session::tracker::DeviceConnection;
@@ -221,7 +221,9 @@ pub(super) fn healths(session: &Session, model: &ConsoleModel) -> Vec<(String, T
 fn robot(session: &Session) -> (String, TextRole) {
     let mode = session.robot.safety_mode();
     let is_over = matches!(session.phase, TrialPhase::Over(_) | TrialPhase::Closed);
+    let is_ready = !session.spec.robot.arm.is_real() || matches!(session.robot.arm.stage, Some((ArmStage::Ready, _)));
     let (words, role) = match (session.robot.stopped, session.robot.held) {
+        _ if !is_ready && !is_over && !mode.is_stopped() => ("ARM NOT READY", TextRole::Alarm),
         (true, _) => (mode.name(), TextRole::Alarm),
         (false, true) => ("ROBOT HELD", TextRole::Strong),
         // After the trial the arm rests.

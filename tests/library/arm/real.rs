@@ -114,7 +114,7 @@ fn what_stops_the_arm_stops_the_robot_until_wizard_and_arm_are_ready() {
         assert_eq!(aborts(&events), Some(AbortReason::Stopped));
         assert!(engine.session().robot.stopped && !engine.session().robot.is_stopped_by_wizard());
         assert_eq!(set_out(&input(&mut engine, Event::RobotResumed)), None, "the arm is not ready yet");
-        for event in go {
+        for event in [vec![stage(ArmStage::Starts)], go].concat() {
             assert_eq!(set_out(&input(&mut engine, event)), None);
         }
         assert!(set_out(&input(&mut engine, stage(ArmStage::Ready))).is_some());

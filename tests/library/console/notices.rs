@@ -285,11 +285,14 @@ fn an_arm_that_stopped_itself_is_told_for_as_long_as_it_stands() {
 /// What a real arm waits for, and the key for it, are told before the trial; why it stands, in the trial.
 #[test]
 fn a_real_arm_says_what_it_waits_for() {
-    let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
-    let address = std::net::IpAddr::from([192, 168, 1, 10]);
-    stage.session.spec.robot.arm = ArmKind::Ur(address);
-    let (kitchen, spec) = (stage.session.kitchen.clone(), stage.session.spec.clone());
-    stage.model.keys = console_model(&kitchen, &spec, (120, 40)).keys;
+    let fresh = || {
+        let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
+        stage.session.spec.robot.arm = ArmKind::Ur(std::net::IpAddr::from([192, 168, 1, 10]));
+        let (kitchen, spec) = (stage.session.kitchen.clone(), stage.session.spec.clone());
+        stage.model.keys = console_model(&kitchen, &spec, (120, 40)).keys;
+        stage
+    };
+    let mut stage = fresh();
     let robot = |stage: &Stage| {
         let check =
             checks(&stage.session, &stage.model).into_iter().find(|check| check.name == "robot").expect("robot");
@@ -298,7 +301,6 @@ fn a_real_arm_says_what_it_waits_for() {
     assert_eq!(robot(&stage).0, "the arm's controller at 192.168.1.10 has not answered yet");
     let told = |stage, found: &str| Event::RobotStage { stage, found: found.to_string() };
     stage.at(1.0, told(ArmStage::Off, ""));
-    stage.shows_everywhere(&["no power", "^y goes on"]);
     assert_eq!(robot(&stage).1, "^y switches the arm on and opens its brakes: nobody is near the arm");
     // The key works where the checks are listed, too.
     stage.key(KeyCode::Char('.'));
@@ -307,7 +309,10 @@ fn a_real_arm_says_what_it_waits_for() {
     assert_eq!(stage.control('y'), Some(ConsoleCommand::Input(confirmed)));
     stage.at(2.0, told(ArmStage::Ready, ""));
     assert_eq!(robot(&stage).0, "the robot is ready");
-    stage.model.dialog = None;
+    let mut stage = fresh();
+    stage.shows((120, 40), &["ARM NOT READY"]);
+    stage.at(2.0, told(ArmStage::Ready, ""));
+    stage.hides((120, 40), &["ARM NOT READY"]);
     stage.at(3.0, Event::TrialStarted);
     stage.at(4.0, told(ArmStage::Lost, "the cable is out"));
     stage.shows_everywhere(&["Arm stopped: no connection: the cable is out; ^r resumes the arm"]);

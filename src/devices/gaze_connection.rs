@@ -342,6 +342,7 @@ mod tests {
         }
         let sample = |x, y, confidence| TrackerMessage::Sample(GazeSample::new(x, y, confidence), None);
         assert_eq!(found.remove(0), sample(0.1, 2.0, 0.0));
+        assert_eq!(found.pop(), Some(TrackerMessage::Closed));
         // The last line lacks its newline.
         assert_eq!(found.pop(), Some(sample(0.25, 0.5, 0.9)));
         assert_eq!(found.remove(2), TrackerMessage::WrongTime(1e20));

@@ -245,7 +245,8 @@ impl Terminal {
 
     pub fn recording(&self) -> PathBuf {
         let entries = fs::read_dir(self.recordings()).expect("recordings");
-        entries.map(|entry| entry.expect("readable").path()).find(|path| path.is_dir()).expect("a recording")
+        let mut paths = entries.map(|entry| entry.expect("readable").path());
+        paths.find(|path| path.join("events.jsonl").exists()).expect("a recording")
     }
 
     pub fn log(&self) -> String {

@@ -132,9 +132,10 @@ mod tests {
             assert!(OPENING.contains(used.trim_start_matches("class ")) && code.contains(used), "{used}");
         }
         assert!(
-            script(Some(SessionTime(94_600_000_000))).contains("openRecording(\"trial_time\", \"end\", 94600000000)")
+            script(Some(SessionTime(94_600_000_000)))
+                .contains("openRecording(\"trial_clock_time\", \"end\", 94600000000)")
         );
-        assert!(script(None).contains("openRecording(\"trial_time\", \"end\", null)"));
+        assert!(script(None).contains("openRecording(\"trial_clock_time\", \"end\", null)"));
     }
 
     #[test]

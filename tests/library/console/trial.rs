@@ -9,7 +9,7 @@ use tomcom::console::preflight::ParticipantDisplayHealth;
 use tomcom::console::preflight::checks;
 use tomcom_core::gaze::calibration::{GazeAccuracy, TargetAccuracy};
 use tomcom_core::gaze::recorded::RecordedGazeSummary;
-use tomcom_session::gaze_check::GazeCheckEvent;
+use tomcom_session::gaze_check::{AcceptedGazeCheck, GazeCheckEvent};
 use tomcom_session::preflight_checks::PreflightVerdict;
 
 use super::{SIZES, Stage, input, type_in};
@@ -267,6 +267,9 @@ fn what_is_not_ok_before_a_trial_is_listed_mended_or_overridden() {
     // As soon as all is mended, the key that starts a trial starts it.
     stage.key(KeyCode::Char('.'));
     stage.model.free_bytes = Some(1 << 40);
+    let found =
+        GazeAccuracy { accuracy_deg: 0.5, corrected_deg: 0.4, precision_deg: 0.1, offset: [0.0; 2], targets: vec![] };
+    stage.session.calibrated = Some(AcceptedGazeCheck { at: at(3.0), found, corrected: false });
     for step in 0..120 {
         stage.look(4.0 + f64::from(step) / 120.0, 0.5, 0.5);
     }

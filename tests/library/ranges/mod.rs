@@ -21,6 +21,8 @@ const SETTINGS: &str = r#"
         [trial]
         orders = 3
         pace_s = 2.0
+        [robot]
+        speed = 0.5
         [tracker]
         corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
         file_start_s = 1.5

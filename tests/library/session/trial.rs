@@ -234,7 +234,7 @@ fn an_error_is_explained_by_what_the_orders_need() {
         assert!(explained[0].with_cause.starts_with(&cost), "{}", explained[0].with_cause);
         let press = JudgedPress { cause: Some(ErrorCause::Slip), ..press };
         let caused = &ExplainedError::among(&session, &[press])[0].with_cause;
-        assert!(caused.starts_with(&format!("cause: slip; {cost}")), "{caused}");
+        assert!(caused.starts_with(&format!("cause (simulated participant): slip; {cost}")), "{caused}");
     };
     check(&["crab maki"], &[(Human, "take shrimp")], "order 1 needs crab");
     // With two orders nobody knows for which of them it was.

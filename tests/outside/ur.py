@@ -235,6 +235,7 @@ def check_session():
         console.key("\x19")
         console.wait_for("arm: ready|all checks|start the trial")
         console.key("\x1b")
+        wait_until(lambda: "Checks before the trial" not in console.text())
         console.start()
         presses(4)
         controller.type("protective-stop")

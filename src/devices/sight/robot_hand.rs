@@ -16,7 +16,6 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, ButtonId};
 #[cfg(feature = "physics")]
 use tomcom_core::robot::ArmPhase;
-#[cfg(feature = "physics")]
 use tomcom_session::wall_display::RobotDepiction;
 use tomcom_session::{Session, TrialPhase};
 

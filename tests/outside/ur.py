@@ -1,5 +1,5 @@
 """The simulated controller of a UR5 against clients of other people: PyPI's ur-rtde and universal-robots-clients, and
-Universal Robots' own RTDE client for Python; and a live session that drives it.
+Universal Robots' own RTDE client for Python.
 
     tests/outside/ur.py TOMCOM FOLDER [CLIENT]
 
@@ -21,9 +21,6 @@ import rtde_receive
 import script_client
 from universal_robots_clients import dashboard_client as dashboard
 from universal_robots_clients import rtde_client as registers
-
-sys.path.insert(0, str(Path(__file__).parent))
-from console import Console  # noqa: E402
 
 TOMCOM, SCRATCH = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
 CLIENT = Path(sys.argv[3]).resolve() if len(sys.argv) > 3 else None
@@ -203,67 +200,6 @@ def check_legs(client):
     again.rtde.disconnect()
 
 
-def robot_presses(folder):
-    """Number of presses of the robot in the only recording in a folder."""
-    logs = list(folder.glob("*/events.jsonl"))
-    return sum(line.count('"kind":"press","agent":"robot"') for line in logs[0].read_text().splitlines()) if logs else 0
-
-
-def check_session():
-    """A live session drives the served arm: set-up, presses, faults, and its recording verifies without an arm."""
-    controller = Controller()
-    session, out = SCRATCH / "real.toml", SCRATCH / "recordings"
-    settings = '[trial]\ncondition = "none"\nseconds = 900\n[assistant]\nshadow = "off"\n[robot]\n'
-    session.write_text(f'layout = "{ROOT}/layouts/sushi.toml"\n{settings}arm = {{ ur = "{HOST}" }}\nspeed = 1.0\n')
-    doctor = subprocess.run([TOMCOM, "doctor", session], capture_output=True, text=True, check=False)
-    assert "simulated by tomcom" in doctor.stdout and "within reach" in doctor.stdout, doctor.stdout
-    refused = subprocess.run([TOMCOM, "simulate", session, "--trials", "1"], capture_output=True, text=True, check=False)
-    assert refused.returncode != 0 and "a real arm, in a run without a console" in refused.stderr, refused.stderr
-
-    with Console(TOMCOM, [session, "--out", out]) as console:
-        def presses(more):
-            wanted = robot_presses(out) + more
-            wait_until(lambda: robot_presses(out) >= wanted, 180.0)
-
-        console.wait_for("no power")
-        console.key(".")
-        console.wait_for("Checks before the trial")
-        console.key("\x19")
-        console.wait_for("waits for its dry run")
-        console.key("\x19")
-        console.wait_for("dry run done", 900)
-        console.key("\x19")
-        console.wait_for("arm: ready|all checks|start the trial")
-        console.key("\x1b")
-        wait_until(lambda: "Checks before the trial" not in console.text())
-        console.start()
-        presses(4)
-        controller.type("protective-stop")
-        console.wait_for("PROTECTIVE STOP")
-        console.key("\x12")
-        presses(2)
-        controller.type("disconnect 1")
-        console.wait_for("NO CONNECTION")
-        console.wait_for("DOES NOT RUN")
-        console.key("\x12")
-        presses(2)
-        controller.type("stop-program")
-        console.wait_for("DOES NOT RUN")
-        console.key("\x12")
-        presses(2)
-        console.key(" ")
-        console.wait_for("EMERGENCY STOP")
-        console.key("\x12")
-        presses(1)
-        console.end()
-        console.quit()
-    controller.end()
-    recording = next(out.iterdir())
-    verified = subprocess.run([TOMCOM, "replay", recording, "--verify"], capture_output=True, text=True, check=False)
-    assert verified.returncode == 0 and "verified" in verified.stdout, verified
-    print(f"  {robot_presses(out)} presses in a session; {verified.stdout.strip()}")
-
-
 def check_registers():
     """universal-robots-clients: state and registers through ur-rtde."""
     client = registers.connect(HOST)
@@ -305,8 +241,6 @@ def main():
         check_legs(client)
         print("legs: Universal Robots' own client")
     controller.end()
-    check_session()
-    print("a session: tomcom's driver")
 
     old = Controller("--series", "cb3")
     older = dashboard_client.DashboardClient(HOST)

@@ -201,7 +201,7 @@ impl Study {
     }
 
     /// What has changed since a recording of the plan that has another digest, in the words of its files: "recipes/sushi.toml",
-    /// "[trial]". `kitchen`: layout and recipes as they are now.
+    /// "`[trial]`". `kitchen`: layout and recipes as they are now.
     pub fn changed_since(&self, recorded: &LogHeader, kitchen: [&RecordedFile; 2]) -> Vec<String> {
         let files = [(&recorded.layout, kitchen[0]), (&recorded.recipes, kitchen[1])].into_iter();
         let mut changed: Vec<String> = files

@@ -12,7 +12,7 @@ use crate::pseudo_terminal::{Terminal, own_session};
 
 /// How often the program is asked to end before it counts as stuck: on a machine so busy that closing a recording takes longer
 /// than two seconds, it is ended by its own limit, with exit code 1.
-const ATTEMPTS: usize = 5;
+const ATTEMPTS: usize = 6;
 
 /// Runs the program until it is so far, reads no further, and asks it to end. It must end by itself, and leave the
 /// terminal as it should be.

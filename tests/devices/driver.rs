@@ -19,7 +19,7 @@ use tomcom_devices::ur::controller::{ProgramState, SimulatedController};
 use tomcom_devices::ur::dashboard::answer;
 use tomcom_devices::ur::driver::{ArmIdentity, DriverAction, PROGRAM, UrDriver};
 use tomcom_devices::ur::faults::Fault;
-use tomcom_devices::ur::link::{self, ArmLink, ArmNews};
+use tomcom_devices::ur::link::{self, ArmNews, UrConnection};
 use tomcom_devices::ur::rtde::{RtdeConnection, package};
 use tomcom_devices::ur::server::ControllerServer;
 use tomcom_session::Event;
@@ -611,7 +611,7 @@ async fn over_the_network_it_switches_the_arm_on_and_comes_back_after_a_loss() {
     let checks = link::examine(here, ports, UrDriver::new(&kitchen, 0.5, false)).await.expect("it answers");
     assert!(checks.iter().all(|check| check.verdict == PreflightVerdict::Ok), "{checks:?}");
     assert!(checks[0].found.starts_with("UR5, software 3.15"), "{checks:?}");
-    let mut arm = ArmLink::start(here, ports, UrDriver::new(&kitchen, 0.5, false)).expect("a thread");
+    let mut arm = UrConnection::start(here, ports, UrDriver::new(&kitchen, 0.5, false)).expect("a thread");
     let orders = arm.orders();
     orders.begin();
     reaches(&mut arm, ArmStage::Off).await;
@@ -622,7 +622,7 @@ async fn over_the_network_it_switches_the_arm_on_and_comes_back_after_a_loss() {
     reaches(&mut arm, ArmStage::Untried).await;
 }
 
-async fn reaches(arm: &mut ArmLink, wanted: ArmStage) {
+async fn reaches(arm: &mut UrConnection, wanted: ArmStage) {
     let comes = async {
         while let Some(news) = arm.next().await {
             if let ArmNews::Event(event) = news

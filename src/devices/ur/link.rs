@@ -57,7 +57,7 @@ pub enum ArmNews {
 }
 
 /// A running driver. It ends, and the arm stops by itself, when this and all its orders are dropped.
-pub struct ArmLink {
+pub struct UrConnection {
     orders: ArmOrders,
     news: mpsc::UnboundedReceiver<ArmNews>,
 }
@@ -93,12 +93,12 @@ impl ArmOrders {
     }
 }
 
-impl ArmLink {
+impl UrConnection {
     /// Starts the driver for a controller with these ports, in the order of [`super::server::PORTS`].
     ///
     /// # Errors
     /// There is no thread for it.
-    pub fn start(address: IpAddr, ports: [u16; 5], driver: UrDriver) -> io::Result<ArmLink> {
+    pub fn start(address: IpAddr, ports: [u16; 5], driver: UrDriver) -> io::Result<UrConnection> {
         let (commands, orders) = mpsc::unbounded_channel();
         let (tell, news) = mpsc::unbounded_channel();
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
@@ -106,7 +106,7 @@ impl ArmLink {
         let shown = Vec::new();
         let service = Service { dashboard, script, rtde, driver, orders, tell, shown, began: Instant::now() };
         std::thread::Builder::new().name("arm".to_string()).spawn(move || runtime.block_on(service.run()))?;
-        Ok(ArmLink { orders: ArmOrders(commands), news })
+        Ok(UrConnection { orders: ArmOrders(commands), news })
     }
 
     pub fn orders(&self) -> ArmOrders {

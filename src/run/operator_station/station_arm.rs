@@ -3,7 +3,7 @@
 use crate::run::error::LiveError;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_devices::ur::driver::UrDriver;
-use tomcom_devices::ur::link::ArmLink;
+use tomcom_devices::ur::link::UrConnection;
 pub(in crate::run) use tomcom_devices::ur::link::{ArmNews, ArmOrders};
 use tomcom_devices::ur::server::PORTS;
 use tomcom_session::SessionSpec;
@@ -11,7 +11,7 @@ use tomcom_session::settings::{ArmKind, ParticipantKind, RobotSpec};
 
 /// The driver, if the session's arm is a real one.
 #[derive(Default)]
-pub(in crate::run) struct StationArm(Option<ArmLink>);
+pub(in crate::run) struct StationArm(Option<UrConnection>);
 
 impl StationArm {
     /// Starts the driver, if the session's arm is a real one.
@@ -22,11 +22,11 @@ impl StationArm {
         let ArmKind::Ur(address) = spec.robot.arm else { return Ok(StationArm::default()) };
         let with_person = matches!(spec.participant.kind, ParticipantKind::Keyboard | ParticipantKind::Display);
         let driver = UrDriver::new(kitchen, spec.robot.speed.unwrap_or(RobotSpec::SPEED), with_person);
-        ArmLink::start(address, PORTS, driver).map(|link| StationArm(Some(link))).map_err(LiveError::Arm)
+        UrConnection::start(address, PORTS, driver).map(|link| StationArm(Some(link))).map_err(LiveError::Arm)
     }
 
     pub fn orders(&self) -> Option<ArmOrders> {
-        self.0.as_ref().map(ArmLink::orders)
+        self.0.as_ref().map(UrConnection::orders)
     }
 
     /// Waits for the arm's next news; waits forever without a real arm.

@@ -490,9 +490,9 @@ fn change_arm(session: &mut Session, now: SessionTime, event: &Event) {
     match event {
         Event::RobotMoves(moment) => session.robot.arm.last = Some((now, *moment)),
         Event::RobotTouched { .. } => session.note_event(now, event),
-        Event::RobotSafety { mode, force_n, .. } => {
+        Event::RobotSafety { mode, force_n, joint } => {
             let arm = &mut session.robot.arm;
-            (arm.mode, arm.stopped_by_n) = (*mode, *force_n);
+            (arm.mode, arm.stopped_by_n, arm.stopped_by_joint) = (*mode, *force_n, *joint);
             // A stop by the wizard has an event of its own, so only other stops are noted here.
             if mode.is_stopped() && !session.robot.stopped {
                 session.robot.stopped = true;

@@ -349,8 +349,9 @@ pub struct ArmStatus {
     /// `None` before the first motion and for the timed arm.
     pub last: Option<(SessionTime, ArmSample)>,
     pub mode: SafetyMode,
-    /// Contact force that caused a protective stop.
+    /// Contact force that caused a protective stop, or the joint that did not follow its command.
     pub stopped_by_n: Option<f64>,
+    pub stopped_by_joint: Option<u8>,
     /// Of a real arm: how far it is with being set up, and what was found.
     pub stage: Option<(ArmStage, String)>,
 }

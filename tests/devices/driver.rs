@@ -556,6 +556,29 @@ fn stops_of_the_safety_system_are_told_and_unlocked_when_the_wizard_says_so() {
 }
 
 #[test]
+fn a_stop_that_nobody_can_unlock_from_here_is_told_and_not_tried_for_ever() {
+    let mut rehearsal = READY.clone();
+    rehearsal.order(1, true);
+    (0..60).for_each(|_| rehearsal.cycle());
+    Fault::ProtectiveStop.happen(&mut rehearsal.controller);
+    rehearsal.until(1.0, |one| one.driver.stage() == ArmStage::Stopped);
+    rehearsal.driver.resume();
+    // The stop comes again each time that it is unlocked.
+    for _ in 0..2500 {
+        if rehearsal.controller.safety() != SafetyMode::ProtectiveStop {
+            Fault::ProtectiveStop.happen(&mut rehearsal.controller);
+        }
+        rehearsal.cycle();
+    }
+    let Some(Event::RobotStage { stage: ArmStage::Stopped, found }) = rehearsal.told.last() else {
+        panic!("the arm stands: {:?}", rehearsal.told.last())
+    };
+    assert!(found.contains("cannot be unlocked from here"), "{found}");
+    rehearsal.driver.resume();
+    rehearsal.until(20.0, |one| one.driver.stage() == ArmStage::Ready);
+}
+
+#[test]
 fn a_lost_motor_is_a_fault_that_is_ended_at_the_controller() {
     let mut rehearsal = READY.clone();
     rehearsal.press(0);

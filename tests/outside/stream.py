@@ -16,6 +16,9 @@ from rerun.experimental import RrdReader
 RERUN = Path(find_spec("rerun_sdk").submodule_search_locations[0]) / "rerun_cli" / "rerun"
 LEAST_PRESSES = 20
 FALSE_BELOW = 0.5
+# How many curves and marks have a colour of their own, and how long after a curve's end another one may have it.
+COLOURS = 6
+APART_NS = 60_000_000_000
 
 
 def run(*command):
@@ -39,13 +42,13 @@ def rows_of(path, timeline="session_time"):
 
 
 def expected(log):
-    """What the log says: for every entity, the (time, number) of the events that change it; and for curves of beliefs,
-    those of the events before which the belief is false."""
+    """What the log says: for every entity, the (time, number) of the events that change it; and for curves and marks of beliefs,
+    P(truth) by the (time, number) of the events that tell it."""
     lines = [json.loads(line) for line in log.read_text().splitlines()]
     header, events = lines[0], lines[1:]
     kitchen = Kitchen(header["layout"]["text"], header["recipes"]["text"])
     trial = Trial(kitchen)
-    found, false, running, shown = {}, {}, False, {}
+    found, beliefs, running, shown = {}, {}, False, {}
     places = [*kitchen.orders, *trial.content]
     # How everything is at the beginning.
     for place in places:
@@ -78,40 +81,75 @@ def expected(log):
                 add("assistant/benefit/cost_line")
             case "robot_moves":
                 add("robot/force")
-            case "belief_estimated":
+            case "belief_estimated" | "participant_believes" as kind:
+                whose = "estimated" if kind == "belief_estimated" else "true"
                 for aspect in event["aspects"]:
-                    entity = "human/belief/estimated/" + aspect["aspect"].replace(" ", "_")
-                    add(entity)
-                    if aspect["p_truth"] < FALSE_BELOW:
-                        false.setdefault(entity, []).append(at)
-            case "participant_believes":
-                for aspect in event["aspects"]:
-                    if aspect["p_truth"] < FALSE_BELOW:
-                        add("human/belief/true/" + aspect["aspect"].replace(" ", "_"))
+                    entity = f"human/belief/{whose}/" + aspect["aspect"].replace(" ", "_")
+                    beliefs.setdefault(entity, {})[at] = aspect["p_truth"]
         for place, content in contents().items():
             if content != before[place]:
                 add(f"kitchen/{place}")
-    return found, false
+    return found, beliefs
+
+
+def curves_of(stream):
+    """For every curve and every mark of beliefs, the values by (time in ns, step), and the places at which a curve ends."""
+    values, ends = {}, {}
+    for chunk in RrdReader(stream).stream():
+        entity, batch = str(chunk.entity_path).strip("/"), chunk.to_record_batch()
+        if chunk.is_static or not entity.startswith("human/belief/") or "Scalars:scalars" not in batch.schema.names:
+            continue
+        times = batch.column("session_time").cast("int64").to_pylist()
+        for place, value in zip(zip(times, batch.column("step").to_pylist()), batch.column("Scalars:scalars").to_pylist()):
+            if value:
+                values.setdefault(entity, {})[place] = value[0]
+            elif value is not None:
+                ends.setdefault(entity, set()).add(place)
+    return values, ends
+
+
+def compare_curves(stream, wanted):
+    """Curves and marks have the values of the log. `wanted`: for each aspect, the P(truth) of the log by place. A curve goes on
+    until it ends, and a mark stands wherever a belief is false; but only six aspects have a colour at a time."""
+    values, ends = curves_of(stream)
+    times = {}
+    for entity, rows in values.items():
+        times.setdefault(entity.split("/")[-1], []).extend(time for time, _ in rows)
+    compared = 0
+    for entity, logged in wanted.items():
+        rows, aspect = values.get(entity, {}), entity.split("/")[-1]
+        steps = {step for _, step in logged}
+        at_presses = {place: value for place, value in rows.items() if place[1] in steps}
+        for place, value in at_presses.items():
+            assert abs(value - logged[place]) < 1e-6, f"{entity} at {place}: {value}, the log says {logged[place]}"
+        between = len(rows) - len(at_presses)
+        is_estimate = "/estimated/" in entity
+        # Between presses the estimate is shown five times a second.
+        assert not is_estimate or between >= len(at_presses) / 10, f"{entity}: {between} rows between presses"
+        assert is_estimate or between == 0, f"{entity}: {between} marks that are not of the log"
+        for place, value in logged.items():
+            drawn = max((row for row in rows if row < place), default=None)
+            goes_on = drawn is not None and not any(drawn <= end < place for end in ends.get(entity, ()))
+            is_due = goes_on if is_estimate else value < FALSE_BELOW
+            if place in at_presses or not is_due:
+                continue
+            coloured = {
+                other for other, seen in times.items() if other != aspect and any(0 <= place[0] - time <= APART_NS for time in seen)
+            }
+            assert not is_estimate and len(coloured) >= COLOURS, f"{entity}: nothing at {place}, where P(truth) is {value}"
+        compared += len(at_presses)
+    assert compared > LEAST_PRESSES, f"only {compared} values of beliefs to compare"
+    return compared
 
 
 def compare(stream, log, least_presses=LEAST_PRESSES):
-    rows, (wanted, false) = rows_of(stream), expected(log)
+    rows, (wanted, beliefs) = rows_of(stream), expected(log)
     assert len(wanted["human/presses"]) >= least_presses, "too few presses to compare anything"
     for entity, places in sorted(wanted.items()):
         got = rows.get(entity, [])
-        if entity.startswith("human/belief/estimated/"):
-            # A curve begins with the first false belief, at a press or between presses.
-            assert min(got, default=(1 << 62, 0)) <= min(false.get(entity, [(1 << 62, 0)])), f"{entity} begins too late"
-            places = [place for place in places if got and place >= min(got)]
-            if len(places) < LEAST_PRESSES:
-                continue
-            # Between presses the estimate is shown five times a second; those at presses are told by the log.
-            steps = {step for _, step in places}
-            between = [place for place in got if place[1] not in steps]
-            assert len(between) > len(places) / 10, f"{entity}: {len(between)} rows between presses"
-            got = [place for place in got if place[1] in steps]
         assert got == sorted(places), f"{entity}: {len(got)} rows, {len(places)} events; {set(got) ^ set(places)}"
-    print(f"  {len(wanted)} entities, {sum(map(len, wanted.values()))} rows as the log has them")
+    compared = compare_curves(stream, beliefs)
+    print(f"  {len(wanted)} entities, {sum(map(len, wanted.values()))} rows and {compared} beliefs as the log has them")
 
 
 def values(stream):

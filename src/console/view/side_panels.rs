@@ -15,7 +15,7 @@ use tomcom_core::communication::Signal;
 use tomcom_core::kitchen::Agent;
 use tomcom_core::robot::{SLOWS_M, SafetyMode};
 use tomcom_session::history::{event_words, wording};
-use tomcom_session::{Event, Session, ShownSignal, TimelineEvent, TrialPhase, proposals};
+use tomcom_session::{Session, ShownSignal, TimelineEvent, TrialPhase, proposals};
 
 /// What the console says while the arm is slow since a hand is near.
 const SLOW: &str = "slow: hand near";
@@ -108,15 +108,10 @@ fn stop_reason(session: &Session) -> String {
     if let Some((stage, found)) = session.robot.arm.unready().filter(|_| !session.robot.arm.mode.is_stopped()) {
         return event_words::arm_stage(stage, found);
     }
-    let stops = session.timeline.iter().rev().find_map(|entry| match &entry.what {
-        TimelineEvent::Noted(Event::RobotSafety { mode, force_n, joint }) if mode.has_stopped_itself() => {
-            Some(event_words::stop_cause(*force_n, *joint))
-        }
-        _ => None,
-    });
-    match (session.robot.is_stopped_by_wizard(), stops) {
-        (true, _) => "stopped by the wizard".to_string(),
-        (false, stops) => stops.flatten().unwrap_or("the arm stopped itself".to_string()),
+    let cause = event_words::stop_cause(session.robot.arm.stopped_by_n, session.robot.arm.stopped_by_joint);
+    match session.robot.is_stopped_by_wizard() {
+        true => "stopped by the wizard".to_string(),
+        false => cause.unwrap_or("the arm stopped itself".to_string()),
     }
 }
 

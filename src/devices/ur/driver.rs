@@ -32,10 +32,13 @@ const DRY_RUN: i32 = 100;
 const STILL_RAD_S: f64 = 0.02;
 /// How far the tip may be from where this program computes it, in metres: more is another arm, or another tool.
 const OFF_M: f64 = 0.005;
-/// Longest time for power and brakes, and for the start of the program, in seconds; time between tries to unlock.
+/// Longest time for power and brakes, for the start of the program, and to unlock, in seconds; time between tries to unlock.
 const POWERS_WITHIN_S: f64 = 60.0;
 const STARTS_WITHIN_S: f64 = 5.0;
+const UNLOCKS_WITHIN_S: f64 = 15.0;
 const UNLOCKS_EVERY_S: f64 = 1.0;
+/// Why the arm does not run, until the wizard resumes it.
+const SAFETY_STOP: &str = "its safety system stopped it";
 
 /// What follows from a reading.
 #[derive(Clone, Debug, PartialEq)]
@@ -92,6 +95,8 @@ pub struct UrDriver {
     powers: Option<(f64, bool)>,
     /// When the next try to let the arm go on is due, if the wizard wants that.
     resumes: Option<f64>,
+    /// When unlocking was tried first.
+    unlocks: Option<f64>,
     wants_dry_run: bool,
     /// Whether the wizard has confirmed a dry run.
     is_tried: bool,
@@ -139,6 +144,7 @@ impl UrDriver {
             program: Program::Stopped,
             powers: None,
             resumes: None,
+            unlocks: None,
             wants_dry_run: false,
             is_tried: false,
             order: ArmOrder { stands: true, ..ArmOrder::default() },
@@ -240,6 +246,9 @@ impl UrDriver {
         if self.safety != reading.safety {
             self.safety = reading.safety;
             self.waiting.push(tell(safety_event(self.safety)));
+            if self.safety.is_stopped() && self.stage == ArmStage::Stopped {
+                self.to(ArmStage::Stopped, SAFETY_STOP);
+            }
         }
         self.feel(reading);
         self.last = Some(*reading);
@@ -354,12 +363,17 @@ impl UrDriver {
 
     fn unlock(&mut self, safety: SafetyMode, now_s: f64) {
         match self.resumes {
-            None => self.to(ArmStage::Stopped, "its safety system stopped it"),
+            None if self.stage == ArmStage::Stopped => self.unlocks = None,
+            None => self.to(ArmStage::Stopped, SAFETY_STOP),
             Some(_) if safety != SafetyMode::ProtectiveStop => {
                 self.resumes = None;
                 self.to(ArmStage::Stopped, format!("end the {} at the teach pendant", safety.name().to_lowercase()));
             }
             Some(due_s) if now_s >= due_s => {
+                if now_s - *self.unlocks.get_or_insert(now_s) > UNLOCKS_WITHIN_S {
+                    self.resumes = None;
+                    return self.to(ArmStage::Stopped, "it cannot be unlocked from here: see the teach pendant");
+                }
                 self.resumes = Some(now_s + UNLOCKS_EVERY_S);
                 let commands = ["close safety popup", "unlock protective stop"].map(DriverAction::Dashboard);
                 self.waiting.extend(commands);

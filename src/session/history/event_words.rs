@@ -257,7 +257,7 @@ pub fn noted_words(note: &str, observer: Option<&str>) -> String {
 pub fn why_stopped(arm: &ArmStatus) -> String {
     match arm.unready().filter(|_| !arm.mode.is_stopped()) {
         Some((stage, found)) => arm_stage(stage, found),
-        None => arm_stopped(arm.mode, arm.stopped_by_n, None),
+        None => arm_stopped(arm.mode, arm.stopped_by_n, arm.stopped_by_joint),
     }
 }
 

@@ -90,30 +90,32 @@ impl EstimatedFalseBeliefs {
         self.all.iter().filter(|one| one.ended != Some(one.began))
     }
 
-    /// Those about an aspect, the last one first.
-    fn of(&self, aspect: AspectId) -> impl Iterator<Item = &EstimatedFalseBelief> {
-        let last = self.last.get(aspect.index()).copied().flatten();
-        let until = last.map_or(0, |last| last + 1);
-        let those = self.all[..until].iter().rev().filter(move |one| one.aspect == aspect);
-        those.filter(|one| one.ended != Some(one.began))
+    /// The last false belief about an aspect of which `begun` holds, unless `over` holds of its end.
+    fn last(
+        &self,
+        aspect: AspectId,
+        begun: impl Fn(SessionTime) -> bool,
+        over: impl Fn(SessionTime) -> bool,
+    ) -> Option<&EstimatedFalseBelief> {
+        let last = self.last.get(aspect.index()).copied().flatten()?;
+        let mut those = self.all[..=last].iter().rev().filter(|one| one.aspect == aspect);
+        let found = those.find(|one| one.ended != Some(one.began) && begun(one.began))?;
+        found.ended.is_none_or(|ended| !over(ended)).then_some(found)
     }
 
     /// The false belief about an aspect that is held at a time.
     pub fn at(&self, aspect: AspectId, time: SessionTime) -> Option<&EstimatedFalseBelief> {
-        let last = self.of(aspect).find(|one| one.began <= time);
-        last.filter(|last| last.ended.is_none_or(|ended| time < ended))
+        self.last(aspect, |began| began <= time, |ended| ended <= time)
     }
 
     /// The false belief about an aspect that was held just before a time.
     pub fn before(&self, aspect: AspectId, time: SessionTime) -> Option<&EstimatedFalseBelief> {
-        let last = self.of(aspect).find(|one| one.began < time);
-        last.filter(|last| last.ended.is_none_or(|ended| time <= ended))
+        self.last(aspect, |began| began < time, |ended| ended < time)
     }
 
     /// The false belief about an aspect that is held at a time, or ends then.
     pub fn until(&self, aspect: AspectId, time: SessionTime) -> Option<&EstimatedFalseBelief> {
-        let last = self.of(aspect).find(|one| one.began <= time);
-        last.filter(|last| last.ended.is_none_or(|ended| time <= ended))
+        self.last(aspect, |began| began <= time, |ended| ended < time)
     }
 
     /// When the belief about an aspect that is false at a time became right; `None` if it has not.

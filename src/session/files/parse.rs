@@ -139,6 +139,10 @@ fn told<T: DeserializeOwned>(text: &str, error: &toml::de::Error) -> (String, Op
     {
         return (value.to_string(), Some(type_name(words)));
     }
+    if message.starts_with("invalid IP") {
+        let setting = setting_at(text, span).unwrap_or(value.to_string());
+        return (setting, Some("an address of numbers, like \"192.168.1.10\"".to_string()));
+    }
     (format!("{value}: {message}"), None)
 }
 

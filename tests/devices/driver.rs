@@ -608,6 +608,24 @@ fn the_wizard_stops_a_dry_run() {
     rehearsal.until(20.0, |one| one.driver.stage() == ArmStage::DryRun && !one.stands());
 }
 
+/// The answers as the tests of the manufacturer's client library have them; those to recipes are of other, shorter ones.
+#[test]
+fn a_client_takes_the_answers_of_a_real_controller() {
+    let mut client = RtdeClient::default();
+    let (asks, news) = client.take(&[0x00, 0x04, 0x56, 0x01]).expect("version 2 is known");
+    assert_eq!((asks, news), (package(b'v', b""), Vec::new()));
+    let version = [0x00, 0x13, 0x76, 0, 0, 0, 5, 0, 0, 0, 8, 0, 0, 0, 0, 0, 0, 0, 0];
+    let (asks, news) = client.take(&version).expect("a version");
+    assert_eq!(news, [ClientNews::Version([5, 8, 0, 0])]);
+    assert_eq!(asks.get(2), Some(&b'O'));
+    assert_eq!(
+        client.take(b"\x00\x11I\x00IN_USE,IN_USE"),
+        Err(ClientFault::InUse("input_int_register_24".to_string()))
+    );
+    assert_eq!(client.take(b"\x00\x11I\x01UINT32,DOUBLE"), Err(ClientFault::Content('I')));
+    assert_eq!(client.take(&[0x00, 0x04, 0x53, 0x01]).expect("it starts"), (Vec::new(), Vec::new()));
+}
+
 #[test]
 fn a_client_says_what_is_wrong_with_a_controller() {
     let fault = |bytes: &[u8]| RtdeClient::default().take(bytes).expect_err("it is refused").to_string();

@@ -19,6 +19,9 @@ FALSE_BELOW = 0.5
 # How many curves and marks have a colour of their own, and how long after a curve's end another one may have it.
 COLOURS = 6
 APART_NS = 60_000_000_000
+# A curve begins when a belief has been false so long, and is drawn so often between presses.
+LASTING_NS = 1_000_000_000
+SHOWN_EVERY_NS = 200_000_000
 
 
 def run(*command):
@@ -108,13 +111,34 @@ def curves_of(stream):
     return values, ends
 
 
+def bars_of(stream):
+    """For every aspect, the (beginning, end) in ns of the bars of false beliefs."""
+    states = {}
+    for chunk in RrdReader(stream).stream():
+        entity, batch = str(chunk.entity_path).strip("/"), chunk.to_record_batch()
+        if not chunk.is_static and entity.startswith("wrong_belief/") and "StateChange:state" in batch.schema.names:
+            times = batch.column("session_time").cast("int64").to_pylist()
+            states.setdefault(entity.split("/")[-1], []).extend(zip(times, batch.column("StateChange:state").to_pylist()))
+    bars = {}
+    for aspect, changes in states.items():
+        changes.sort()
+        bars[aspect] = [(at, end) for (at, [words]), (end, _) in zip(changes, changes[1:]) if words]
+    return bars
+
+
 def compare_curves(stream, wanted):
-    """Curves and marks have the values of the log. `wanted`: for each aspect, the P(truth) of the log by place. A curve goes on
-    until it ends, and a mark stands wherever a belief is false; but only six aspects have a colour at a time."""
+    """Curves and marks have the values of the log. `wanted`: for each aspect, the P(truth) of the log by place. A curve begins
+    where a belief has been false for a second, goes on until it ends, and a mark stands wherever a belief is false; but only six
+    aspects have a colour at a time."""
     values, ends = curves_of(stream)
     times = {}
     for entity, rows in values.items():
         times.setdefault(entity.split("/")[-1], []).extend(time for time, _ in rows)
+
+    def has_no_colour(aspect, at):
+        others = {one for one, seen in times.items() if one != aspect and any(0 <= at - time <= APART_NS for time in seen)}
+        return len(others) >= COLOURS
+
     compared = 0
     for entity, logged in wanted.items():
         rows, aspect = values.get(entity, {}), entity.split("/")[-1]
@@ -133,11 +157,14 @@ def compare_curves(stream, wanted):
             is_due = goes_on if is_estimate else value < FALSE_BELOW
             if place in at_presses or not is_due:
                 continue
-            coloured = {
-                other for other, seen in times.items() if other != aspect and any(0 <= place[0] - time <= APART_NS for time in seen)
-            }
-            assert not is_estimate and len(coloured) >= COLOURS, f"{entity}: nothing at {place}, where P(truth) is {value}"
+            assert not is_estimate and has_no_colour(aspect, place[0]), f"{entity}: nothing at {place}, where P(truth) is {value}"
         compared += len(at_presses)
+    for aspect, bars in bars_of(stream).items():
+        rows = [time for time, _ in values.get(f"human/belief/estimated/{aspect}", {})]
+        for at, end in bars:
+            begins = at + LASTING_NS
+            is_drawn = any(begins <= time <= end + SHOWN_EVERY_NS for time in rows)
+            assert end - begins < SHOWN_EVERY_NS or is_drawn or has_no_colour(aspect, end), f"{aspect}: no curve from {at} to {end} ns"
     assert compared > LEAST_PRESSES, f"only {compared} values of beliefs to compare"
     return compared
 

@@ -21,9 +21,9 @@ const MOST_NAMED: usize = 12;
 
 /// Lists the recordings of a folder.
 ///
-/// Code, kind (trial or practice; simulated), condition, date, length of the trial, errors, and state: whole, ended early
-/// (left before all was done), cut (without its end), empty, excluded (or aborted), running, unreadable. Sorted by code
-/// and date.
+/// Code, kind (trial or practice; simulated), condition, date, length of the trial, errors, and state: whole, ended by
+/// wizard (who ended the trial), ended early (left before all was done), cut (without its end), empty, excluded (or
+/// aborted), running, unreadable. Sorted by code and date.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples: tomcom list sessions\n          tomcom list recordings --format json\nMore: docs/recordings.md"

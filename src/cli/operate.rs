@@ -9,9 +9,9 @@ use super::choices::{ArmArg, ConditionArg, ParticipantArg, concept, gaze_parser}
 use super::failure::{Failure, wrong_setting};
 use super::lab::tell_carried;
 use super::output::{put, put_aside};
-use crate::run::files;
 use crate::run::options::{self, DEFAULT_SESSION, SeriesRequest, SessionStart, SettingOverrides};
 use crate::run::series::{self, SeriesOutcome};
+use crate::run::{files, plan};
 use tomcom_core::communication::settings::ConceptSpec;
 use tomcom_session::features::Feature;
 use tomcom_session::files::carried;
@@ -29,7 +29,7 @@ pub(super) struct OperateArgs {
     /// The session file; by default sessions/default.toml.
     pub(super) session: Option<PathBuf>,
     /// Continue a recording that was cut off or ended early, in a new part beside it; a running trial is paused.
-    #[arg(long = "continue", value_name = "RECORDING", conflicts_with_all = ["session", "code", "participant", "gaze", "gaze_file", "gaze_start", "arm", "listen", "condition", "concept", "seed", "rerun_listen", "out"])]
+    #[arg(long = "continue", value_name = "RECORDING", conflicts_with_all = ["session", "code", "participant", "gaze", "gaze_file", "gaze_start", "arm", "listen", "condition", "concept", "seed", "rerun_listen", "out", "frozen"])]
     pub(super) recording: Option<PathBuf>,
     #[command(flatten)]
     pub(super) flags: OperateFlags,
@@ -79,6 +79,9 @@ pub(super) struct OperateFlags {
     /// recording. At another address than localhost the page asks for a pairing code of its own, which the console shows.
     #[arg(long, value_name = "ADDRESS:PORT", num_args = 0..=1, require_equals = true, default_missing_value = "127.0.0.1:50023")]
     pub(super) observe: Option<SocketAddr>,
+    /// Refuse to record unless the plan is the one that was frozen in this file by tomcom plan PLAN --freeze FILE.
+    #[arg(long, value_name = "FILE")]
+    pub(super) frozen: Option<PathBuf>,
     /// Folder in which the recording's folder is created. Not with --continue: a further part is created beside the
     /// recording.
     #[arg(long, default_value = "sessions")]
@@ -124,6 +127,9 @@ pub(super) fn new_session(
         rerun_listen: flags.rerun_listen.clone(),
     };
     overrides.apply(&mut files).map_err(wrong_setting)?;
+    if let Some(frozen) = &flags.frozen {
+        plan::check_frozen(name, &files, frozen)?;
+    }
     files.spec.require_built_live().map_err(|missing| FileError::not_built(name, missing))?;
     let out = flags.out.clone();
     if flags.code.is_none() && files.spec.plan.is_none() {

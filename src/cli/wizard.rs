@@ -155,6 +155,7 @@ fn check_flags(args: &CompareArgs, is_session: bool) -> Result<(), Failure> {
         ("--condition", flags.condition.is_some()),
         ("--concept", flags.concept.is_some()),
         ("--seed", flags.seed.is_some()),
+        ("--frozen", flags.frozen.is_some()),
     ];
     let of_recordings = [
         ("--sweep", args.sweep),

@@ -369,6 +369,9 @@ fn key_columns(key: Option<KeyChord>) -> u16 {
     key.map_or(0, |key| width(&key.to_string()) + 1)
 }
 
+/// Height of a list of errors, with its frame, from which it has room for more than the errors.
+pub const ROOMY_LIST: u16 = 14;
+
 /// The rater's list of errors on the screen.
 #[derive(Clone, Copy, Debug)]
 pub struct ErrorListLayout {
@@ -388,10 +391,10 @@ impl ErrorListLayout {
         let (inside, head_rows) = match (&coding.party, is_lines) {
             (CodingRaters::Pair { .. }, true) if area.height > 3 => (area, 2),
             (_, true) => (area, 1),
-            // Lines above the list of errors: the progress bar, and the present error or the next step; where there is
-            // room, also what was on the display.
-            (CodingRaters::Rater(_), false) => (inside(area), if area.height < 14 { 4 } else { 5 }),
-            (CodingRaters::Pair { .. }, false) => (inside(area), if area.height < 14 { 5 } else { 6 }),
+            // Lines above the list of errors: the present error or the next step; where there is room, also the progress
+            // bar and what was on the display.
+            (CodingRaters::Rater(_), false) => (inside(area), if area.height < ROOMY_LIST { 3 } else { 5 }),
+            (CodingRaters::Pair { .. }, false) => (inside(area), if area.height < ROOMY_LIST { 4 } else { 6 }),
         };
         let head_rows = head_rows.min(inside.height);
         let head = Rect { height: head_rows, ..inside };

@@ -501,6 +501,8 @@ pub struct Playback {
     pub events: usize,
     /// The landmark that a key went to last, in words, with the replay's position there; shown while the replay is there.
     pub landmark: Option<(usize, String)>,
+    /// That no film of the recording has this moment, in words.
+    pub outside_film: Option<&'static str>,
     pub follows: bool,
     pub cut: bool,
     /// Whether the recording is still being made, but the replay does not follow it.
@@ -522,6 +524,7 @@ impl Playback {
             event: 0,
             events: 0,
             landmark: None,
+            outside_film: None,
             follows: false,
             cut: false,
             running: false,

@@ -28,7 +28,7 @@ const SPEEDS: (f64, f64) = (0.01, 100.0);
 
 /// A film in a window of mpv.
 pub struct FilmPlayer {
-    film: AttachedFilm,
+    pub film: AttachedFilm,
     process: ChildProcess,
     /// Its socket is in a folder that no other account can enter.
     folder: TempDir,

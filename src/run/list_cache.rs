@@ -21,7 +21,7 @@ use tomcom_session::log::{LOG_NAME, corrected_code};
 use tomcom_session::settings::Condition;
 use tomcom_session::study_arm::StudyArm;
 use tomcom_session::{Event, TimestampedEvent};
-use tomcom_study::analysis::recording_summary::{ListedPlace, RecordingKind};
+use tomcom_study::analysis::recording_summary::{ListedPlace, RecordingKind, RecordingState};
 
 /// Number of bytes at the end of a log that its digest covers.
 const TAIL: u64 = 4096;
@@ -39,6 +39,8 @@ pub struct CachedRecordingNumbers {
     /// Number of the human's presses that were errors.
     pub errors: u64,
     pub kind: RecordingKind,
+    /// By the log alone: rulings beside it change.
+    pub state: RecordingState,
 }
 
 /// A line of the cache file: the digest of a log, and the numbers about its recording.

@@ -9,12 +9,12 @@ use super::error::LiveError;
 use super::series::{recordings_of, slot_name, stands};
 use tomcom_core::base::text::PathText;
 use tomcom_core::base::text::count;
-use tomcom_session::files::KitchenWithSources;
-use tomcom_session::files::file_error::FileResult;
+use tomcom_session::files::file_error::{FileError, FileResult, place_of, read_text};
+use tomcom_session::files::{KitchenWithSources, SessionSetup};
 use tomcom_session::plan::{ParticipantProgress, RecordingOutcome, Study, TrialAttempt, orders};
 use tomcom_session::study_arm::StudyArm;
 use tomcom_study::files::pool_file;
-use tomcom_study::frozen_plan::FrozenPlan;
+use tomcom_study::frozen_plan::{FrozenPlan, PlanDifference};
 
 /// Progress of a study: the output of `tomcom plan SESSION`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -114,6 +114,45 @@ pub fn freeze(
     let frozen = FrozenPlan::new(study, [&kitchen.layout.text, &kitchen.recipes.text], recordings_before);
     let digest = pool_file::freeze(file, &frozen)?;
     Ok(FrozenPlanSummary { plan: frozen.plan, digest, recordings_before, file: file.to_path_buf().into() })
+}
+
+/// Checks that the study of a session file is the one that was frozen in the file `frozen`.
+///
+/// # Errors
+/// The file is no frozen plan, or the study is another one: at the first setting or line that differs.
+pub fn check_frozen(session: &Path, files: &SessionSetup, frozen: &Path) -> FileResult<()> {
+    let (_, plan) = pool_file::read_frozen(frozen)?;
+    let wrong = |found: &str| {
+        let remedy = format!("the plan \"{}\", which was frozen in {}", plan.plan, frozen.display());
+        FileError::from_finding(session, found.to_string(), remedy)
+    };
+    let study = files.study().ok_or_else(|| wrong("a session without a plan"))?;
+    if study.digest == plan.plan_digest {
+        return Ok(());
+    }
+    let right = |value: &str| format!("{value}, as it was frozen in {}", frozen.display());
+    if let Some(PlanDifference { path, nth, found, frozen }) = plan.differs_from(&study) {
+        let text = read_text(session)?;
+        return Err(FileError::at(session, &text, place_of(&text, &path, nth), found, right(&frozen)));
+    }
+    let KitchenWithSources { layout, recipes, .. } = &files.kitchen;
+    let layout_path = session.parent().unwrap_or(Path::new(".")).join(&layout.path);
+    let recipes_path = layout_path.parent().unwrap_or(Path::new(".")).join(&recipes.path);
+    for (path, now, before) in [
+        (layout_path, &layout.text, &plan.settings["layout"]),
+        (recipes_path, &recipes.text, &plan.settings["recipes"]),
+    ] {
+        let before = before.as_str().unwrap_or_default();
+        if now != before {
+            let same =
+                now.split_inclusive('\n').zip(before.split_inclusive('\n')).take_while(|(now, before)| now == before);
+            let start = same.map(|(line, _)| line.len()).sum();
+            let [found, wanted] =
+                [now, before].map(|text| text[start..].lines().next().unwrap_or("the end of the file"));
+            return Err(FileError::at(&path, now, Some(start..start + found.len()), found.to_string(), right(wanted)));
+        }
+    }
+    Err(wrong("another text of what participants are told, taught or asked"))
 }
 
 /// Progress of the study as text for the terminal.

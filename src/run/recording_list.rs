@@ -30,7 +30,7 @@ use tomcom_study::{parallel, standing};
 /// Which information a list of recordings contains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecordingListDetail {
-    /// The list has everything but the number of errors, which takes longest to compute.
+    /// The list has everything, but of errors only numbers in the cache: to count them takes longest.
     Quick,
     /// The list has everything, including the number of errors.
     WithErrors,
@@ -92,15 +92,15 @@ fn read_or_tell(
     if let Some(glance) = &glance
         && let Some(figures) = cache.figures(&glance.digest)
     {
-        return (from_figures(path, depth, glance, figures).unwrap_or_else(unreadable), None);
+        return (from_figures(path, glance, figures).unwrap_or_else(unreadable), None);
     }
     match read(path, depth, cost) {
         Ok(row) => {
-            // The cache stands for whole recordings only: a closed log does not tell another state at a glance.
-            let glance = glance.filter(|_| row.state == RecordingState::Whole);
+            // The words of an exclusion are not kept.
+            let glance = glance.filter(|_| row.state != RecordingState::Excluded);
             let new = glance.zip(row.arm.zip(row.trial_s).zip(row.errors.zip(row.kind)));
             let new = new.map(|(glance, ((arm, trial_s), (errors, kind)))| {
-                (glance.digest, CachedRecordingNumbers { arm, trial_s, errors, kind })
+                (glance.digest, CachedRecordingNumbers { arm, trial_s, errors, kind, state: row.state })
             });
             (row, new)
         }
@@ -109,12 +109,7 @@ fn read_or_tell(
 }
 
 /// The list's row of a closed recording whose numbers are in the cache.
-fn from_figures(
-    path: &Path,
-    depth: RecordingListDetail,
-    glance: &ClosedLogHeader,
-    figures: CachedRecordingNumbers,
-) -> FileResult<ListedRecording> {
+fn from_figures(path: &Path, glance: &ClosedLogHeader, figures: CachedRecordingNumbers) -> FileResult<ListedRecording> {
     let standing = standing::with_ruling(ExclusionStatus::default(), path)?;
     let is_excluded = !standing.counts();
     Ok(ListedRecording {
@@ -124,10 +119,10 @@ fn from_figures(
         arm: Some(figures.arm),
         date: glance.date.clone(),
         trial_s: Some(figures.trial_s),
-        errors: (depth == RecordingListDetail::WithErrors).then_some(figures.errors),
+        errors: Some(figures.errors),
         kind: Some(figures.kind),
         place: glance.place.clone(),
-        state: if is_excluded { RecordingState::Excluded } else { RecordingState::Whole },
+        state: if is_excluded { RecordingState::Excluded } else { figures.state },
         reason: is_excluded.then(|| standing.describe()),
     })
 }
@@ -177,7 +172,7 @@ const REDRAW: Duration = Duration::from_millis(100);
 /// The folder cannot be read or has no recordings, or there is no terminal.
 pub fn pick(folder: &Path, does: &'static str) -> Result<Option<PathBuf>, ReviewError> {
     let number = recordings::of_folder(folder)?.len();
-    let headings = without_errors(RecordingList::HEADINGS.map(str::to_string));
+    let headings = RecordingList::HEADINGS.map(str::to_string).to_vec();
     let title = format!("Which recording of {}?", folder.display());
     let picker = RecordingPicker { reading: Some(number), ..RecordingPicker::new(title, headings, Vec::new(), does) };
     let (tell, read) = channel();
@@ -203,13 +198,7 @@ fn newest_first(folder: &Path) -> FileResult<PickedRows> {
     let (list, paths) = list(folder, RecordingListDetail::Quick, |_| (), || ())?;
     let mut newest: Vec<(ListedRecording, PathBuf)> = list.recordings.into_iter().zip(paths).collect();
     newest.sort_by(|(one, _), (other, _)| (&other.date, &other.recording).cmp(&(&one.date, &one.recording)));
-    Ok(newest.into_iter().map(|(one, path)| (without_errors(one.cells()), path)).unzip())
-}
-
-/// The page has no column of errors, since counting errors takes long.
-fn without_errors(cells: [String; 8]) -> Vec<String> {
-    let [code, kind, condition, date, length, _, state, recording] = cells;
-    vec![code, kind, condition, date, length, state, recording]
+    Ok(newest.into_iter().map(|(one, path)| (one.cells().to_vec(), path)).unzip())
 }
 
 /// A list of recordings from which none has been chosen yet.

@@ -375,8 +375,14 @@ impl ConsoleShell for Review {
         let (length, events) = self.film.length();
         let (event, cut) = (self.film.position, self.film.is_cut());
         let trial_length = self.film.trial_length();
+        // Where one of the films has the moment, nothing is missing.
+        let has_moment = |player: &FilmPlayer| player.film.outside(self.now).is_none();
+        let first = self.players.first().filter(|_| !self.players.iter().any(has_moment));
+        let outside_film = first.and_then(|player| player.film.outside(self.now));
         self.mark();
-        self.playback(|playback| *playback = Playback { length, trial_length, event, events, cut, ..playback.clone() });
+        self.playback(|playback| {
+            *playback = Playback { length, trial_length, event, events, cut, outside_film, ..playback.clone() };
+        });
     }
 
     fn view(&self) -> ShellView<'_> {

@@ -130,6 +130,11 @@ impl SeekableReplay {
         let last = replay.log().last_event()?;
         let unread_end = Some(last.map_or((SessionTime::ZERO, 0), |last| (last.time, last.seq as usize + 1)));
         let mut session = replay.session().clone();
+        // Nobody sat at the console of a simulated trial, so that nothing is to be hidden that a wizard did not see.
+        if replay.log().header.started.is_none() {
+            let visibility = &mut session.spec.console.visibility;
+            *visibility = WizardVisibility::Belief.max(*visibility);
+        }
         let snapshots = Snapshots::new(&mut session);
         Ok(SeekableReplay {
             replay,

@@ -145,6 +145,29 @@ impl Planned {
         )))
     }
 
+    /// The question whether a recording is meant, where another of the participant is of another kind of participant.
+    fn other_kind(&self, code: &str) -> Result<Option<StartPrompt>, LiveError> {
+        let (made, _) = recordings_of(&self.study, &self.series.out)?;
+        let kind = self.study.session.participant.kind;
+        for PlanRecording { recording, .. } in made.iter().rev().filter(|made| made.code == code) {
+            let before = LogReader::open(&self.series.out.join(recording))?.header.session.participant.kind;
+            if before != kind {
+                return Ok(Some(StartPrompt::new(
+                    format!("{code}: ANOTHER KIND OF PARTICIPANT"),
+                    vec![
+                        format!(
+                            "Found: {}, by `kind` under [participant] in the session file, or by --participant.",
+                            kind.words()
+                        ),
+                        format!("Right, as in {recording} of {code}: {}.", before.words()),
+                    ],
+                    vec![format!("record with the {}", kind.words()), "leave: nothing is recorded".to_string()],
+                )));
+            }
+        }
+        Ok(None)
+    }
+
     async fn run(self) -> Result<SeriesOutcome, LiveError> {
         let code = self.study.plan.code(self.series.participant);
         // Until the series is over, no other program can begin a recording of the participant.
@@ -161,10 +184,10 @@ impl Planned {
         {
             return Ok(SeriesOutcome { done, remark: Some(stands(&progress)) });
         }
-        if let Some(question) = self.changed(&code)?
-            && ask(&mut station, question).await? != Some(0)
-        {
-            return Ok(SeriesOutcome { done, remark: Some(stands(&progress)) });
+        for question in [self.changed(&code)?, self.other_kind(&code)?].into_iter().flatten() {
+            if ask(&mut station, question).await? != Some(0) {
+                return Ok(SeriesOutcome { done, remark: Some(stands(&progress)) });
+            }
         }
         let excluded: Vec<usize> = progress.excluded().map(|(slot, _)| slot).collect();
         if !excluded.is_empty() {

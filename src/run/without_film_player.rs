@@ -6,11 +6,13 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_session::log::video_file::AttachedFilm;
 
 /// There are none.
-pub enum FilmPlayer {}
+pub struct FilmPlayer {
+    pub film: AttachedFilm,
+}
 
 impl FilmPlayer {
     pub fn show(&mut self, _: SessionTime, _: f64) -> bool {
-        match *self {}
+        false
     }
 }
 

@@ -3,7 +3,7 @@
 
 use crate::admit::{admit, is_too_early};
 use crate::event::{SignalEndReason, TrialEndReason};
-use crate::gaze_samples::take_sample;
+use crate::gaze_samples::{note_loss, take_sample};
 use crate::tracker::TrackerEvent;
 use crate::{
     Event, ServedOrder, Session, ShownSignal, TimelineEntry, TimelineEvent, TimestampedEvent, TrialPhase, gaze_check,
@@ -317,6 +317,7 @@ fn resume(session: &mut Session, now: SessionTime, effects: &mut Vec<SessionEffe
 }
 
 fn end_trial(session: &mut Session, now: SessionTime, reason: TrialEndReason, effects: &mut Vec<SessionEffect>) {
+    note_loss(session, now);
     stop_clock(session, now);
     session.phase = TrialPhase::Over(reason);
     probes::trial_ends(session, now);

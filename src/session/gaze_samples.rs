@@ -1,7 +1,8 @@
 //! The participant's gaze in a session: how a sample changes its state (sampling rate, faults, the locations looked
 //! at).
 
-use crate::{Session, gaze_check};
+use crate::settings::GazeSource;
+use crate::{Session, TrialPhase, gaze_check};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::quality::{GazeFault, GazeFaultDetector};
 use tomcom_core::gaze::{GazeSample, MIN_CONFIDENCE};
@@ -18,6 +19,9 @@ pub struct GazeStatus {
     pub looked_at: [Option<SessionTime>; MAX_LOCATIONS],
     /// The latest sample, if it is unusable and not faulty: with too low a confidence, or outside of the display.
     pub latest_unusable: Option<GazeSample>,
+    /// Times of the trial in which no usable sample came for more than [`LOST_S`]: of the last usable sample, and of the
+    /// next one or the trial's end.
+    pub losses: Vec<[SessionTime; 2]>,
     /// Locations in whose areas the latest sample lies, as a bit set; empty if it is faulty or unusable, or was taken
     /// while the kitchen was not on the display.
     pub here: u32,
@@ -42,6 +46,8 @@ pub(crate) struct RateMeasurement {
     pub samples: u32,
 }
 
+/// Time since the last usable gaze sample from which the gaze counts as lost.
+pub const LOST_S: f64 = 1.0;
 /// A gap of this length makes the rate be measured anew.
 const GAP_S: f64 = 0.5;
 /// Time over which the rate is measured; the first measurement counts from [`FIRST_S`] on.
@@ -68,7 +74,8 @@ pub(crate) fn take_sample(session: &mut Session, now: SessionTime, sample: GazeS
         status.unusable += 1;
         return;
     }
-    status.last = Some((now, sample));
+    note_loss(session, now);
+    session.gaze.last = Some((now, sample));
     if !session.had_kitchen_on_display(taken) {
         return;
     }
@@ -78,6 +85,16 @@ pub(crate) fn take_sample(session: &mut Session, now: SessionTime, sample: GazeS
             status.looked_at[index] = Some(taken);
             status.here |= 1 << index;
         }
+    }
+}
+
+/// Keeps the time since the last usable sample, if it was long, when the next one comes or the trial ends.
+pub(crate) fn note_loss(session: &mut Session, now: SessionTime) {
+    let since = session.gaze.last.map_or(session.trial_start, |(at, _)| at.max(session.trial_start));
+    let is_in_trial = matches!(session.phase, TrialPhase::Running | TrialPhase::Paused);
+    let has_gaze = session.spec.participant.gaze != GazeSource::None;
+    if is_in_trial && has_gaze && session.age(since, now).as_secs_f64() > LOST_S {
+        session.gaze.losses.push([since, now]);
     }
 }
 

@@ -251,7 +251,15 @@ impl Session {
 
     /// Whether it has a trial that ran to its end, also after the session's own end.
     pub fn is_trial_over(&self) -> bool {
-        self.timeline.iter().any(|entry| matches!(entry.what, TimelineEvent::Trial(TrialPhase::Over(_))))
+        self.trial_end().is_some()
+    }
+
+    /// Why its trial ended, also after the session's own end; `None` for a trial that is not over.
+    pub fn trial_end(&self) -> Option<TrialEndReason> {
+        self.timeline.iter().find_map(|entry| match entry.what {
+            TimelineEvent::Trial(TrialPhase::Over(reason)) => Some(reason),
+            _ => None,
+        })
     }
 
     /// Whether nothing happened that somebody would miss: no trial was begun, no note written, no eye tracker sent

@@ -406,6 +406,17 @@ pub enum ParticipantKind {
     External,
 }
 
+impl ParticipantKind {
+    pub fn words(self) -> &'static str {
+        match self {
+            ParticipantKind::Simulated => "simulated participant",
+            ParticipantKind::Keyboard => "person at the keyboard",
+            ParticipantKind::Display => "person at the display",
+            ParticipantKind::External => "external participant",
+        }
+    }
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GazeSource {

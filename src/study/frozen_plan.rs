@@ -10,9 +10,9 @@ use crate::arm_comparison::arm_pairs;
 use crate::definitions::DEFINITIONS;
 use crate::effect::LEVEL;
 use tomcom_core::base::text::count;
-use tomcom_session::LogHeader;
-use tomcom_session::plan::{PrimaryOutcome, Study};
+use tomcom_session::plan::{PlanSpec, PrimaryOutcome, Study, what_can_change_a_trial};
 use tomcom_session::study_arm::StudyArm;
+use tomcom_session::{LogHeader, SessionSpec};
 
 pub(crate) const FROZEN_FORMAT: u32 = 1;
 
@@ -117,6 +117,29 @@ impl FrozenPlan {
         }
     }
 
+    /// The first setting of plan and session that differs from the frozen one and can change a trial.
+    pub fn differs_from(&self, study: &Study) -> Option<PlanDifference> {
+        let session = |plan: PlanSpec, session: SessionSpec| SessionSpec { plan: Some(plan), ..session };
+        let [plan, frozen] = ["plan", "session"].map(|name| self.settings[name].clone());
+        let frozen = session(serde_json::from_value(plan).ok()?, serde_json::from_value(frozen).ok()?);
+        let now = session(study.plan.clone(), study.session.clone());
+        let [before, after] = [&frozen, &now].map(what_can_change_a_trial);
+        let path = before.keys().chain(after.keys()).find(|path| before.get(*path) != after.get(*path))?;
+        // A list is one setting, and the numbers of lists are no part of a path in the session file.
+        let is_number = |part: &&str| part.bytes().all(|byte| byte.is_ascii_digit());
+        let mut parts: Vec<&str> = path.split('.').collect();
+        while parts.pop_if(|part| is_number(&&**part)).is_some() {}
+        let (numbers, names): (Vec<&str>, Vec<&str>) = parts.iter().partition(|part| is_number(part));
+        let key = names.last()?;
+        let words = |spec: &SessionSpec| {
+            let all = serde_json::to_value(spec).unwrap_or_default();
+            let value = all.pointer(&format!("/{}", parts.join("/"))).filter(|value| !value.is_null());
+            value.map_or_else(|| format!("no {key}"), |value| format!("{key} = {value}"))
+        };
+        let nth = numbers.first().and_then(|number| number.parse().ok()).unwrap_or(0);
+        Some(PlanDifference { path: names.join("."), nth, found: words(&now), frozen: words(&frozen) })
+    }
+
     fn differs_from_program(&self) -> Vec<String> {
         let mut found = Vec::new();
         let (own, program) = (&self.analysis, env!("CARGO_PKG_VERSION"));
@@ -145,6 +168,17 @@ impl FrozenPlan {
         found.extend(gone.map(|frozen| format!("the definition of \"{}\" is gone", frozen.term)));
         found
     }
+}
+
+/// A setting that is not as it was frozen.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PlanDifference {
+    /// Its dotted path in the session file, and its index among settings with this path.
+    pub path: String,
+    pub nth: usize,
+    /// "presses = 40"; likewise as it was frozen.
+    pub found: String,
+    pub frozen: String,
 }
 
 fn current_definitions() -> Vec<FrozenDefinition> {

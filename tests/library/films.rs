@@ -154,6 +154,8 @@ fn films_of_a_recording_are_kept_by_file_and_read_back() {
     assert_eq!(films.films.iter().map(|film| film.offset_s).collect::<Vec<_>>(), [3.5, 2.0], "a film is there once");
     video_file::write(folder.path(), &films).expect("written");
     assert_eq!(video_file::read(folder.path()).expect("read"), films);
+    let outside = |time_s| film("a.mp4", -3.0).outside(SessionTime::from_secs_f64(time_s));
+    assert_eq!([1.0, 4.0, 350.0].map(outside), [Some("before the film"), None, Some("after the film")]);
     assert!((film("a.mp4", 3.0).film_s(SessionTime::from_secs_f64(1000.0)) - 1003.1).abs() < 1e-9);
     assert_eq!(films.films[0].path(folder.path()), Path::new("/films/room.mp4"));
     let mut copy = film("hands-h264.mp4", 2.0);

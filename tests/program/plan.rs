@@ -228,6 +228,12 @@ fn check_excluded_trial_is_repeated(terminal: &Terminal, session: &str, out: &st
     let told = String::from_utf8_lossy(&tomcom(&["plan", session, "--out", out]).stdout).into_owned();
     assert!(told.contains("everything is done, 1 excluded: repeat with tomcom operate SESSION --code A1"), "{told}");
     assert!(told.contains("1 of 2 participants have done everything; 1 participant with an excluded trial"), "{told}");
+    // Its recordings are of a simulated participant.
+    terminal.run(&["operate", session, "--code", "A1", "--out", out, "--participant", "keyboard", "--gaze", "none"]);
+    terminal.see("A1: ANOTHER KIND OF PARTICIPANT");
+    terminal.see("Found: person at the keyboard");
+    choose(terminal, "2");
+    terminal.is_whole(0);
     // It is asked for, and left alone.
     operate(terminal, session);
     terminal.see("A1: SIMULATED PARTICIPANT");

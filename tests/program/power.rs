@@ -107,6 +107,16 @@ fn a_plan_is_frozen_once_and_the_study_says_whether_it_is_that_one() {
     assert_eq!((check["differences"].as_array().map(Vec::len), &check["to_come"][0]), (Some(0), &Value::from("P03")));
     let report = fs::read_to_string(Path::new(&recordings).join("study/report.html")).expect("a report");
     assert!(report.contains("So far as preregistered"), "the report says so");
+    // Nothing is recorded under another plan.
+    let session = fs::read_to_string(&plan).expect("a session file");
+    for (now, before) in [("presses = 41", "presses = 40"), ("participants = 5", "participants = 4")] {
+        fs::write(&plan, session.replacen(before, now, 1)).expect("written");
+        let line = session.lines().position(|line| line == before).expect("a setting") + 1;
+        for told in [format!("short.toml:{line}: found {now}"), format!("{before}, as it was frozen")] {
+            refused(&["operate", &plan, "--code", "P01", "--frozen", &file], &told);
+        }
+    }
+    fs::write(&plan, &session).expect("written");
     let text = fs::read_to_string(&file).expect("frozen");
     fs::write(&file, text.replacen("\"level\": 0.95", "\"level\": 0.90", 1)).expect("written");
     refused(&["study", &recordings, "--skip", "concepts,events", "--frozen", &file], "it was changed after");

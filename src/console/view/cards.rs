@@ -22,7 +22,7 @@ use tomcom_core::kitchen::{Agent, Dish};
 use tomcom_core::robot::SafetyMode;
 use tomcom_session::event::Event;
 use tomcom_session::history::{event_words, wording};
-use tomcom_session::settings::{Condition, GazeSource, ParticipantKind};
+use tomcom_session::settings::{Condition, GazeSource};
 use tomcom_session::{Session, TimelineEvent, TrialPhase};
 
 /// Width of a card, and least width of the names in its left column.
@@ -71,12 +71,7 @@ fn place(session: &Session) -> String {
 
 /// Who plays, in the largest letters that a terminal has.
 fn who_plays(session: &Session) -> String {
-    let who = match session.spec.participant.kind {
-        ParticipantKind::Simulated => "SIMULATED PARTICIPANT",
-        ParticipantKind::Keyboard => "PERSON AT THE KEYBOARD",
-        ParticipantKind::Display => "PERSON AT THE DISPLAY",
-        ParticipantKind::External => "EXTERNAL PARTICIPANT",
-    };
+    let who = session.spec.participant.kind.words().to_uppercase();
     who.chars().flat_map(|letter| [letter, ' ']).collect::<String>().trim_end().to_string()
 }
 

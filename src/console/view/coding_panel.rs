@@ -3,9 +3,9 @@
 use ratatui::layout::Rect;
 
 use super::paint::Painter;
-use super::regions::{PanelAreas, ScreenSize};
+use super::regions::{PanelAreas, ScreenSize, top};
 use super::theme::TextRole;
-use crate::console::coding::{self, CodebookEntry, CodingRaters, ErrorListLayout, RaterSession};
+use crate::console::coding::{self, CodebookEntry, CodingRaters, ErrorListLayout, ROOMY_LIST, RaterSession};
 use crate::console::console_model::ConsoleModel;
 use crate::console::mouse::ClickAction;
 use crate::console::text_columns::{fit, width, wrap};
@@ -74,7 +74,7 @@ fn draw_errors(brush: &mut Painter, regions: &PanelAreas, coding: &RaterSession,
     match list.head.y > area.y {
         true => {
             brush.panel(area, &coding.progress(), "");
-            draw_head(brush, list.head, coding, events);
+            draw_head(brush, list.head, area, coding, events);
         }
         false => draw_lines(brush, list.head, coding, events),
     }
@@ -120,10 +120,13 @@ fn draw_lines(brush: &mut Painter, head: Rect, coding: &RaterSession, events: us
     }
 }
 
-/// Draws the progress bar, and below it the present error in words, or the next step.
-fn draw_head(brush: &mut Painter, head: Rect, coding: &RaterSession, events: usize) {
+/// Draws the progress bar, where the list has room, and below it the present error in words, or the next step.
+fn draw_head(brush: &mut Painter, mut head: Rect, list: Rect, coding: &RaterSession, events: usize) {
     let (x, columns) = (head.x + 1, head.width.saturating_sub(2));
-    brush.bar(x, head.y, columns, share(coding), TextRole::Strong);
+    if list.height >= ROOMY_LIST {
+        brush.bar(x, head.y, columns, share(coding), TextRole::Strong);
+        (_, head) = top(head, 1);
+    }
     let mut lines: Vec<(String, TextRole)> = Vec::new();
     if let Some(next) = coding.next_step() {
         lines.extend(wrap(&next, columns).into_iter().map(|line| (line, TextRole::Strong)));
@@ -145,9 +148,9 @@ fn draw_head(brush: &mut Painter, head: Rect, coding: &RaterSession, events: usi
     } else {
         lines.push(("enter goes to the human's first error".to_string(), TextRole::Quiet));
     }
-    for (row, (line, role)) in lines.iter().enumerate().take(usize::from(head.height.saturating_sub(1))) {
+    for (row, (line, role)) in lines.iter().enumerate().take(usize::from(head.height)) {
         let style = brush.style(*role);
-        brush.text(x, head.y + 1 + row as u16, columns, line, style);
+        brush.text(x, head.y + row as u16, columns, line, style);
     }
 }
 

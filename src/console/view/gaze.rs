@@ -19,7 +19,7 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::calibration::{GOOD_DEG, GazeAccuracy, USABLE_DEG};
 use tomcom_core::gaze::{MIN_CONFIDENCE, nearest_location};
 use tomcom_core::kitchen::LocationId;
-use tomcom_session::gaze_samples::faults;
+use tomcom_session::gaze_samples::{LOST_S, faults};
 use tomcom_session::settings::GazeSource;
 use tomcom_session::tracker::DeviceConnection;
 use tomcom_session::{Session, TrialPhase};
@@ -28,8 +28,6 @@ use tomcom_session::{Session, TrialPhase};
 const GAZE_S: f64 = 3.0;
 /// Longest time since the last gaze sample for which the participant counts as looking there now, in seconds.
 const NOW_S: f64 = 0.2;
-/// Time since the last usable gaze sample from which the gaze counts as unusable, in seconds.
-const USABLE_S: f64 = 1.0;
 /// Duration of the trail of gaze on the gaze map, in seconds.
 const TRAIL_S: f64 = 2.0;
 
@@ -53,7 +51,11 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     let remark = format!("{source}{}", told.collect::<String>());
     let inside = brush.panel(area, "Gaze", &remark);
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
-    line(brush, x, inside.y, columns, session, model, false);
+    let is_low = inside.height < 2;
+    line(brush, x, inside.y, columns, session, model, is_low);
+    if is_low {
+        return;
+    }
     if let Some(loss) = GazeLoss::now(session, model.now) {
         let why = loss.why(session, model);
         let share = 100.0 * session.gaze.unusable as f64 / session.gaze.samples.max(1) as f64;
@@ -88,7 +90,7 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
         return;
     };
     let age_s = model.now.secs_since(at);
-    if age_s > USABLE_S {
+    if age_s > LOST_S {
         brush.parts(x, y, columns, &[("last: ", TextRole::Quiet), (&place, TextRole::Quiet)]);
         return;
     }
@@ -122,7 +124,7 @@ pub(super) fn is_known(session: &Session, now: SessionTime) -> bool {
 pub(super) struct GazeLoss {
     cause: GazeLossCause,
     /// Of the last usable sample, or when the tracker was lost.
-    since: Option<SessionTime>,
+    pub(super) since: Option<SessionTime>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -154,7 +156,7 @@ impl GazeLoss {
         let goes_on =
             session.phase == TrialPhase::Paused && !matches!(source, GazeSource::Simulated | GazeSource::Mouse);
         match session.gaze_hz(now) {
-            _ if last.is_some_and(|at| now.secs_since(at) <= USABLE_S) => None,
+            _ if last.is_some_and(|at| now.secs_since(at) <= LOST_S) => None,
             Some(_) => loss(GazeLossCause::Unusable, last),
             None => loss(GazeLossCause::Silence, last).filter(|_| session.is_running() || goes_on),
         }

@@ -19,8 +19,8 @@ const AROUND: u16 = 7;
 const BESIDE: u16 = 6;
 /// Columns between two cells.
 const GAP: u16 = 2;
-/// Heading of the column that is left out where not all fit; the others tell recordings and their states apart.
-const LEFT_OUT: &str = "length";
+/// Headings of the columns that are left out where not all fit; the others tell recordings and their states apart.
+const LEFT_OUT: [&str; 2] = ["errors", "length"];
 /// Least width of a column whose cells are cut.
 const LEAST_CELL: u16 = 6;
 /// Heading of the column whose cells are cut at their beginning: recordings of a day differ in the end of their names.
@@ -95,10 +95,15 @@ impl ShownColumns {
         };
         let columns = picker.headings.len();
         let cut_in_front = picker.headings.iter().position(|heading| heading == CUT_IN_FRONT).unwrap_or(columns);
-        let widths = (0..columns).map(|column| (column, width_of(column))).collect();
+        // Of recordings of which nothing is known, such as errors that were never counted, a column would be empty.
+        let is_empty = |column: &usize| picker.rows.iter().all(|row| row.get(*column).is_none_or(|cell| cell == "-"));
+        let shown = (0..columns).filter(|column| picker.rows.is_empty() || !is_empty(column));
+        let widths = shown.map(|column| (column, width_of(column))).collect();
         let mut shown = ShownColumns { widths, cut_in_front };
-        if shown.needed() > room {
-            shown.widths.retain(|(column, _)| picker.headings[*column] != LEFT_OUT);
+        for heading in LEFT_OUT {
+            if shown.needed() > room {
+                shown.widths.retain(|(column, _)| picker.headings[*column] != heading);
+            }
         }
         let over = shown.needed().saturating_sub(room);
         if let Some((_, name)) = shown.widths.iter_mut().find(|(column, _)| *column == cut_in_front) {

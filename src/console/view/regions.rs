@@ -62,6 +62,8 @@ pub struct PanelAreas {
 
 /// Least number of columns at which the offer and its reason fit into one line.
 const OFFER_COLUMNS: u16 = 140;
+/// Least height of a terminal on which a replay's message has two lines.
+const TWO_MESSAGES: u16 = 24;
 /// Least width of the kitchen panel, in columns, at which names of usual length need no abbreviation.
 const KITCHEN_COLUMNS: u16 = 81;
 /// Rows and columns of a panel's frame.
@@ -91,20 +93,23 @@ const ERROR_LINES: u16 = 4;
 const FEW_ERROR_LINES: (u16, u16) = (24, 2);
 /// Least width of the codebook beside the kitchen, in columns.
 const CODEBOOK_COLUMNS: u16 = 35;
-/// Rows that the codebook leaves for the error list below it, with the list's title.
-const ERRORS_ROWS: u16 = 8;
+/// Rows that the codebook's definitions leave for the error list below it, with the list's title.
+const ERRORS_ROWS: u16 = 12;
 
 /// Numbers of rows that the kitchen needs, and those that only some uses of the console need: coding, comparison, replay.
 #[derive(Clone, Copy, Debug)]
 struct LineRows {
     orders: u16,
     kitchen: KitchenMapRows,
-    /// If a rater codes errors: rows of the codebook across the screen, and in a column beside the kitchen.
-    codebook: Option<[u16; 2]>,
+    /// If a rater codes errors: rows of the codebook across the screen; and of its panel beside the kitchen, at least and
+    /// with all definitions.
+    codebook: Option<[u16; 3]>,
     comparison: Option<u16>,
     scrubs: bool,
     /// What a replay says of errors and signals is longer than what a session, a training or a rater is told.
     messages: u16,
+    /// Of an offer on a narrow terminal: its reason stands in a line of its own.
+    offer: u16,
 }
 
 impl PanelAreas {
@@ -116,12 +121,15 @@ impl PanelAreas {
         let codebook = model.coding.as_ref().map(|_| {
             let (keys, kitchen) = (&model.keys, &session.kitchen);
             let compact = coding::compact(keys, kitchen, size.0.saturating_sub(2)).len() as u16;
-            [compact, coding::full(keys, kitchen, CODEBOOK_COLUMNS).len() as u16]
+            let beside = [coding::compact, coding::full];
+            let [least, most] = beside.map(|lines| lines(keys, kitchen, CODEBOOK_COLUMNS).len() as u16 + FRAME);
+            [compact, least, most]
         });
         let scrubs = model.playback.is_some();
         let messages = if scrubs && codebook.is_none() && model.lesson.is_none() { 2 } else { 1 };
         let kitchen = LineRows::for_kitchen(&session.kitchen);
-        let lines = LineRows { codebook, comparison: compared, scrubs, messages, ..kitchen };
+        let offer = if session.spec.asks_assistant() { 2 } else { 1 };
+        let lines = LineRows { codebook, comparison: compared, scrubs, messages, offer, ..kitchen };
         let regions = PanelAreas::with(size, visibility(session, model), model.alone, lines);
         if model.lesson.is_some() { regions.teaching() } else { regions }
     }
@@ -162,14 +170,14 @@ impl PanelAreas {
         };
         let all = Rect::new(0, 0, size.0, size.1);
         let (head, rest) = top(all, 1);
-        let offer_rows = if size.0 < OFFER_COLUMNS { 2 } else { 1 };
+        let offer_rows = if size.0 < OFFER_COLUMNS { lines.offer } else { 1 };
         let (offer, rest) = top(rest, if visibility == WizardVisibility::Recommendation { offer_rows } else { 0 });
         let (rest, footer) = bottom(rest, 1);
-        let (rest, message) = bottom(rest, if screen_size > ScreenSize::Small { lines.messages } else { 1 });
+        let (rest, message) = bottom(rest, if size.1 >= TWO_MESSAGES { lines.messages } else { 1 });
         let (rest, scrub) = bottom(rest, u16::from(lines.scrubs));
         let blank = Rect::default();
         let (rest, codebook, errors) = match lines.codebook {
-            Some([rows, _]) if alone.is_some() || screen_size == ScreenSize::Small => {
+            Some([rows, ..]) if alone.is_some() || screen_size == ScreenSize::Small => {
                 let few = size.1 < FEW_ERROR_LINES.0;
                 let (rest, errors) = bottom(rest, if few { FEW_ERROR_LINES.1 } else { ERROR_LINES });
                 let (rest, codebook) = bottom(rest, rows);
@@ -209,11 +217,11 @@ impl PanelAreas {
             ScreenSize::Medium => bare.medium(visibility, lines),
             ScreenSize::Large => bare.large(visibility, lines),
         };
-        lines.codebook.map_or(regions, |[_, rows]| regions.coding(rows + FRAME))
+        lines.codebook.map_or(regions, |[_, least, most]| regions.coding([least, most]))
     }
 
     /// Gives the codebook and the error list the areas of panels that a rater must not see: signals and estimates.
-    fn coding(self, codebook_rows: u16) -> PanelAreas {
+    fn coding(self, codebook_rows: [u16; 2]) -> PanelAreas {
         let blank = Rect::default();
         match self.screen_size {
             // On small terminals the robot's state and the gaze share a line.
@@ -296,11 +304,13 @@ impl PanelAreas {
     fn medium(self, visibility: WizardVisibility, lines: LineRows) -> PanelAreas {
         // A row of offers comes after all lines of the kitchen.
         let has_offers = visibility == WizardVisibility::Recommendation && self.kitchen.height >= OFFERS_FROM;
-        let rows = self.timeline_rows(TIMELINE_ROWS + FRAME + u16::from(has_offers));
+        // A rater's timeline has no signals, and the gaze no second line.
+        let codes = u16::from(lines.codebook.is_some());
+        let rows = self.timeline_rows(TIMELINE_ROWS + FRAME + u16::from(has_offers) - codes);
         let (rest, timeline) = bottom(self.kitchen, rows);
         let (column, side) = left(rest, (rest.width * 13 / 20).max(KITCHEN_COLUMNS));
         let (side, robot) = bottom(side, ROBOT_ROWS);
-        let (side, gaze) = bottom(side, GAZE_ROWS);
+        let (side, gaze) = bottom(side, GAZE_ROWS - codes);
         let (side, shown) = bottom(side, SHOWN_ROWS);
         let (orders, kitchen, presses) = lines.column(column);
         let regions = PanelAreas { orders, kitchen, presses, shown, robot, gaze, timeline, ..self };
@@ -315,6 +325,7 @@ impl PanelAreas {
     fn large(self, visibility: WizardVisibility, lines: LineRows) -> PanelAreas {
         // The timeline has one more row where offers are shown.
         let rows = TIMELINE_ROWS + FRAME + u16::from(visibility == WizardVisibility::Recommendation);
+        let rows = rows - u16::from(lines.codebook.is_some());
         let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(rows));
         let (column, side) = left(rest, (rest.width * 11 / 20).max(KITCHEN_COLUMNS));
         let (orders, kitchen, below) = lines.column(column);
@@ -383,6 +394,7 @@ impl LineRows {
             comparison: None,
             scrubs: false,
             messages: 1,
+            offer: 2,
         }
     }
 
@@ -399,9 +411,9 @@ impl LineRows {
     }
 }
 
-/// Divides a column of the screen between the codebook and the list of errors.
-fn codes_and_errors(column: Rect, codebook_rows: u16) -> (Rect, Rect) {
-    top(column, codebook_rows.min(column.height.saturating_sub(ERRORS_ROWS)))
+/// Divides a column of the screen between the codebook and the list of errors, which come before the definitions.
+fn codes_and_errors(column: Rect, [least, most]: [u16; 2]) -> (Rect, Rect) {
+    top(column, if most + ERRORS_ROWS <= column.height { most } else { least })
 }
 
 /// Height of the comparison: axis, first lane, three rows for each assistant (lane, lines between matches, statistics),

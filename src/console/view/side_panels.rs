@@ -347,12 +347,9 @@ pub fn draw_training(brush: &mut Painter, regions: &PanelAreas, model: &ConsoleM
     };
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     let mut y = inside.y;
-    if regions.screen_size != ScreenSize::Small {
-        let quiet = brush.style(TextRole::Quiet);
-        brush.text(x, y, columns, &lesson.score, quiet);
-        y += 1;
-    }
-    for (clock, text, role) in training_lines(lesson, model) {
+    let score = (String::new(), lesson.score.clone(), TextRole::Quiet);
+    let score = Some(score).filter(|_| regions.screen_size != ScreenSize::Small);
+    for (clock, text, role) in score.into_iter().chain(training_lines(lesson, model)) {
         let indent = if clock.is_empty() { 0 } else { CLOCK };
         for (row, line) in wrap(&text, columns.saturating_sub(indent)).iter().enumerate() {
             if y >= inside.bottom() {

@@ -5,6 +5,7 @@
 
 use ratatui::layout::Rect;
 
+use super::gaze::GazeLoss;
 use super::paint::Painter;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
@@ -41,7 +42,7 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
         // In a low timeline, signals, orders and notes share a row.
         true => &["", "human", "robot", "events"],
         // A rater's timeline shows no signals.
-        false if model.coding.is_some() => &["", "human", "robot", "", "orders", "notes"],
+        false if model.coding.is_some() => &["", "human", "robot", "orders", "notes"],
         false if has_offers(inside, session, model) => &["", "human", "robot", "signals", "orders", "notes", "offers"],
         false => &["", "human", "robot", "signals", "orders", "notes"],
     };
@@ -54,17 +55,24 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     let back = (f64::from(model.timeline_back_s) / COLUMN_S) as i64;
     let newest = session.timeline.iter().rev().filter(|entry| entry.time <= model.now);
     let entries = newest.map(|entry| (columns_ago(session, model, entry.time, COLUMN_S) - back, entry));
+    let row_of = |row: u16| match is_small {
+        true => row.min(3),
+        false if model.coding.is_some() && row > 3 => row - 1,
+        false => row,
+    };
     let in_view: Vec<Mark> = entries
         .skip_while(|(age, _)| *age < 0)
         .take_while(|(age, _)| *age < i64::from(plot.width))
         .filter_map(|(age, entry)| {
             let (row, sign, role) = mark(brush, session, model, entry)?;
-            let row = if is_small { row.min(3) } else { row };
+            let row = row_of(row);
             Some(Mark { x: plot.right() - 1 - age.max(0) as u16, y: plot.y + row, sign, role })
         })
         .filter(|mark| mark.y < plot.bottom())
         .collect();
     place(brush, plot, &in_view);
+    let notes = Rect { y: plot.y + row_of(5), height: 1, ..plot };
+    gaze_losses(brush, notes.intersection(plot), session, model, !is_small);
     if rows.len() > 6 {
         offers(brush, Rect { y: plot.y + 6, height: 1, ..plot }, session, model);
     }
@@ -123,6 +131,29 @@ fn offers(brush: &mut Painter, row: Rect, session: &Session, model: &ConsoleMode
         let next = seen.peek().map_or(row.right().into(), |(next, ..)| column(next.opened));
         if is_missed && after >= i64::from(row.x) && after + i64::from(width(MISSED)) <= next {
             brush.text(after as u16, row.y, row.right() - after as u16, MISSED, style);
+        }
+    }
+}
+
+/// Draws each loss of gaze between the notes, as far as they leave room: an alarm, then, where no signals share the row
+/// (`has_line`), a line as long as it lasts.
+fn gaze_losses(brush: &mut Painter, row: Rect, session: &Session, model: &ConsoleModel, has_line: bool) {
+    let back = (f64::from(model.timeline_back_s) / COLUMN_S) as i64;
+    let column = |time| i64::from(row.right()) - 1 - (columns_ago(session, model, time, COLUMN_S) - back);
+    let is_in_trial = matches!(session.phase, TrialPhase::Running | TrialPhase::Paused);
+    let present = GazeLoss::now(session, model.now).filter(|_| is_in_trial);
+    let present = present.map(|loss| [loss.since.unwrap_or_default().max(session.trial_start), model.now]);
+    let style = brush.style(TextRole::Alarm);
+    for [since, until] in session.gaze.losses.iter().copied().chain(present) {
+        let (from, to) = (column(since), column(until));
+        let mut sign = if from < i64::from(row.x) { brush.theme.signs().frame[4] } else { "!" };
+        for at in from.max(row.x.into())..=to.min(i64::from(row.right()) - 1) {
+            let cell = (at as u16, row.y);
+            let is_free = row.contains(cell.into()) && brush.buffer.cell(cell).is_some_and(|cell| cell.symbol() == " ");
+            if is_free && (has_line || sign == "!") {
+                brush.text(at as u16, row.y, 1, sign, style);
+                sign = brush.theme.signs().frame[4];
+            }
         }
     }
 }
@@ -286,7 +317,9 @@ pub fn draw_position(brush: &mut Painter, regions: &PanelAreas, session: &Sessio
         return;
     }
     let clock = session.trial_clock(model.now);
+    let film = playback.outside_film.map(|outside| format!(" {outside}, "));
     let part = match session.phase {
+        _ if let Some(film) = &film => film,
         TrialPhase::Ready => BEFORE,
         TrialPhase::Closed if !session.is_trial_over() => " left early, ",
         TrialPhase::Over(_) | TrialPhase::Closed => " after the trial, ",

@@ -69,6 +69,16 @@ impl AttachedFilm {
         self.offset_s + time.as_secs_f64() * (1.0 + self.drift_ppm * 1e-6)
     }
 
+    /// That a moment of the session is not in the film, in words; `None` if it is, or if the film's length is not known.
+    pub fn outside(&self, time: SessionTime) -> Option<&'static str> {
+        let film_s = self.film_s(time);
+        match self.length_s {
+            _ if film_s < 0.0 => Some("before the film"),
+            Some(length_s) if film_s > length_s => Some("after the film"),
+            _ => None,
+        }
+    }
+
     /// Session time in seconds of a time in the film; negative before the session begins.
     pub fn session_s(&self, film_s: f64) -> f64 {
         (film_s - self.offset_s) / (1.0 + self.drift_ppm * 1e-6)

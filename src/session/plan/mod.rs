@@ -13,7 +13,7 @@ mod study;
 use crate::person_code;
 pub use crate::plan::study::{
     NextRecording, ParticipantProgress, PhaseStand, PlanRecording, PlannedTrial, PlannedTrialProgress,
-    RecordingOutcome, Study, TrialAttempt, WantedRecording,
+    RecordingOutcome, Study, TrialAttempt, WantedRecording, what_can_change_a_trial,
 };
 use crate::protocol::StudyPhase;
 pub use crate::questionnaire::{

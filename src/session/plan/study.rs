@@ -313,9 +313,10 @@ const CANNOT_CHANGE_A_TRIAL: [&str; 28] = [
     "rerun",
     "video",
 ];
+
 /// The settings that can change a trial, by their path. A switch that is off, as by default, is left out: a new one
 /// leaves the digests of all plans as they are.
-fn what_can_change_a_trial(session: &SessionSpec) -> BTreeMap<String, Value> {
+pub fn what_can_change_a_trial(session: &SessionSpec) -> BTreeMap<String, Value> {
     let by_path = |session: &SessionSpec| {
         let mut values = BTreeMap::new();
         collect(serde_json::to_value(session).unwrap_or_default(), "", &mut values);

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::analysis::trial_summary::{FalseBeliefErrorSummary, TrialSummary};
 use tomcom_core::base::text::count;
 use tomcom_core::gaze::quality::{DroppedInputCounts, GazeFaultCounts};
+use tomcom_session::event::TrialEndReason;
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::gaze_samples::faults;
 use tomcom_session::log::LogEnding;
@@ -85,12 +86,15 @@ impl RecordingSummary {
 
 /// What became of a recording. The list, `--continue` and the study judge by the same facts: whether its session was
 /// closed, and whether its trial and, in a plan, its step was done then.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, strum::IntoStaticStr)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum RecordingState {
     /// Everything was done, and the session closed.
     Whole,
+    /// Likewise, but the wizard ended the trial before its number of presses, time or orders.
+    #[strum(serialize = "ended by wizard")]
+    EndedByWizard,
     /// The session was closed, by the wizard or by a signal to the program, before everything was done.
     #[strum(serialize = "ended early")]
     EndedEarly,
@@ -113,6 +117,7 @@ impl RecordingState {
             _ if session.is_empty() => RecordingState::Empty,
             LogEnding::Cut => RecordingState::Cut,
             LogEnding::Closed if session.ended_early => RecordingState::EndedEarly,
+            LogEnding::Closed if session.trial_end() == Some(TrialEndReason::Wizard) => RecordingState::EndedByWizard,
             LogEnding::Closed => RecordingState::Whole,
         }
     }

@@ -542,7 +542,7 @@ fn a_training_says_what_to_do_keeps_what_it_said_and_ends_when_that_is_read() {
     let task = ["A hit is the first signal about a false belief that leads to an error."];
     let lesson = TrainingPanel {
         task: task.map(str::to_string).to_vec(),
-        score: "0 hit".to_string(),
+        score: "3 hit, 12 missed, 10 wrong or needless".to_string(),
         ..TrainingPanel::default()
     };
     stage.model.lesson = Some(lesson.clone());

@@ -168,12 +168,11 @@ fn whole_words_and_beginnings_go_before_letters_with_others_between() {
 fn a_typed_code_leaves_its_own_recordings() {
     let rows = (1..=21).map(|number| {
         let name = format!("2026-11-28-P{number:02}-7");
-        [&format!("P{number:02}"), "wizard", "person", "2026-11-28 09:21", "9:07", "whole", &name]
+        [&format!("P{number:02}"), "wizard", "person", "2026-11-28 09:21", "9:07", "-", "whole", &name]
             .map(str::to_string)
             .to_vec()
     });
-    let headings =
-        RecordingList::HEADINGS.into_iter().filter(|heading| *heading != "errors").map(str::to_string).collect();
+    let headings = RecordingList::HEADINGS.map(str::to_string).to_vec();
     let mut picker = RecordingPicker::new("Which recording?".to_string(), headings, rows.collect(), "replay");
     for (typed, code) in
         [("p21", "P21"), ("p07", "P07"), ("P1", "P10"), ("p07 wizard", "P07"), ("p07-7", "P07"), ("28-p07", "P07")]
@@ -224,18 +223,18 @@ fn the_list_takes_what_is_typed_while_the_recordings_are_read() {
         assert_eq!(press(&mut picker, KeyCode::Char(letter)), None);
     }
     assert_eq!(press(&mut picker, KeyCode::Enter), None, "no row is chosen unseen");
-    let reads = screen(&picker);
+    let reads = screen(&picker, 80);
     assert!(reads.contains("reading 3 recordings") && reads.contains("p07 1/2_"), "{reads}");
     (picker.rows, picker.reading) = (rows, None);
-    picker.rows[1][4] = "1/2 of study".to_string();
+    picker.rows[1][1] = "1/2 of study".to_string();
     assert_eq!(picker.left(), [1], "the filter keeps signs that codes and steps have");
 }
 
 fn picker() -> RecordingPicker {
     let row = |code: &str, condition: &str, kind: &str, state: &str, name: &str| {
-        [code, condition, kind, "2026-03-14 10:22", "15:00", state, name].map(str::to_string).to_vec()
+        [code, kind, condition, "2026-03-14 10:22", "15:00", "7", state, name].map(str::to_string).to_vec()
     };
-    let headings = ["code", "condition", "kind", "date", "length", "state", "recording"].map(str::to_string).to_vec();
+    let headings = RecordingList::HEADINGS.map(str::to_string).to_vec();
     let rows = vec![
         row("P08", "wizard", "person", "excluded", "2026-03-15-P08-1"),
         row("P07", "wizard", "person", "ended early", "2026-03-14-P07-2"),
@@ -248,10 +247,10 @@ fn press(picker: &mut RecordingPicker, code: KeyCode) -> Option<RecordingReply> 
     picker.key(&KeyEvent::new(code, KeyModifiers::NONE))
 }
 
-/// The list as it is drawn at 80x24.
-fn screen(picker: &RecordingPicker) -> String {
+/// The list as it is drawn with this many columns.
+fn screen(picker: &RecordingPicker, columns: u16) -> String {
     let theme = Theme { colour: true, unicode: true, ground: TerminalBackground::Dark };
-    let mut terminal = Terminal::new(TestBackend::new(80, 24)).expect("a test terminal");
+    let mut terminal = Terminal::new(TestBackend::new(columns, 24)).expect("a test terminal");
     terminal.draw(|frame| draw_recordings(picker, theme, frame)).expect("drawn");
     terminal.backend().to_string()
 }
@@ -263,16 +262,21 @@ fn columns_that_tell_recordings_apart_stay_where_not_all_fit() {
         picker.rows = (1..=3)
             .map(|trial| {
                 let name = format!("2026-03-14-{code}-{trial}");
-                [code, "wizard with advice", "practice", "2026-03-14 10:22", "15:00", "ended early", &name]
+                [code, "practice", "wizard with advice", "2026-03-14 10:22", "15:00", "12", "ended early", &name]
                     .map(str::to_string)
                     .to_vec()
             })
             .collect();
-        let screen = screen(&picker);
-        assert!(!screen.contains("length"), "{screen}");
+        let [narrow, wide] = [80, 120].map(|columns| screen(&picker, columns));
+        picker.rows.iter_mut().for_each(|row| row[5] = "-".to_string());
+        assert!(!screen(&picker, 120).contains("errors"), "they were never counted");
+        let screen = narrow;
+        assert!(!screen.contains("length") && !screen.contains("errors"), "{screen}");
         if code == "P07" {
             let whole = ["wizard with advice", "practice", "2026-03-14 10:22", "ended early"];
             assert!(whole.iter().all(|words| screen.contains(words)), "{screen}");
+            let all = ["length", "15:00", "errors", " 12 "];
+            assert!(all.iter().all(|words| wide.contains(words)), "{wide}");
         }
         for trial in 1..=3 {
             assert!(screen.contains(&format!("-{trial} ")), "trial {trial} in\n{screen}");
@@ -284,5 +288,5 @@ fn columns_that_tell_recordings_apart_stay_where_not_all_fit() {
 fn the_list_is_a_table_with_its_filter_above() {
     let mut picker = picker();
     press(&mut picker, KeyCode::Char('w'));
-    check_snapshot("console", "recordings_80x24", screen(&picker));
+    check_snapshot("console", "recordings_80x24", screen(&picker, 80));
 }

@@ -54,9 +54,12 @@ fn a_replay_has_one_clock() {
     stage.model.playback = Some(playback);
     for size in SIZES {
         let screen = stage.screen(size);
-        assert!(screen.contains("0:19 of 1:30"), "{screen}");
+        assert!(screen.contains(" 0:19 of 1:30"), "{screen}");
         assert!(screen.lines().next().is_some_and(|head| head.contains(" 0:19 ")), "{screen}");
     }
+    stage.model.playback.as_mut().expect("a replay").outside_film = Some("after the film");
+    stage.shows_everywhere(&[" after the film, 0:19 of 1:30"]);
+    stage.model.playback.as_mut().expect("a replay").outside_film = None;
     let ready = Stage::new("sushi", ParticipantKind::Simulated);
     stage.session = ready.session;
     stage.shows((80, 24), &["before the trial, 0:00 of 1:30"]);
@@ -486,6 +489,10 @@ fn a_loss_of_gaze_has_the_same_words_everywhere() {
     lost(&stage, "NO GAZE 6 s", "no gaze for 6 s", "its sender closed the connection");
     stage.at(29.6, Event::TrialPaused);
     lost(&stage, "NO GAZE 7 s", "no gaze for 7 s", "its sender closed the connection");
+    // The timeline keeps the loss, two columns a second; in the first and last are the loss before and the pause.
+    for size in [(120, 40), (200, 60)] {
+        stage.shows(size, &[&format!("!{}", "─".repeat(12))]);
+    }
     stage.at(29.6, Event::TrialResumed);
     stage.at(29.6, Event::TrialEnded { reason: TrialEndReason::Wizard });
     stage.shows_everywhere(&["gaze idle"]);
@@ -651,10 +658,12 @@ fn colours_keep_their_contrast_on_dark_and_light_terminals() {
 #[test]
 fn a_replay_says_at_which_landmark_it_stands_for_as_long_as_it_stands_there() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    let landmark = Some((10, "error 1 of 17: take salmon".to_string()));
+    let words = "error 1 of 17: take salmon: cause (simulated participant): false belief about recipe of crab maki (order 2); \
+                 order 1 needs tuna; costs 2 presses";
+    let landmark = Some((10, words.to_string()));
     stage.replays(Playback { length: at(40.0), event: 10, events: 90, landmark, ..Playback::new("S001".to_string()) });
     stage.model.clock = at(3600.0);
-    stage.shows_everywhere(&["error 1 of 17: take salmon"]);
+    stage.shows_everywhere(&["error 1 of 17: take salmon", "costs 2 presses"]);
     stage.model.say(NoticeLevel::Refused, "the recording has no later error");
     stage.shows_everywhere(&["the recording has no later error"]);
     stage.hides(SIZES[0], &["error 1 of 17"]);

@@ -2,7 +2,7 @@
 
 use tomcom::run::list_cache::{CachedRecordingNumbers, ClosedLogHeader, ListCache};
 use tomcom_session::header::VERSION;
-use tomcom_study::analysis::recording_summary::RecordingKind;
+use tomcom_study::analysis::recording_summary::{RecordingKind, RecordingState};
 
 use super::{SESSIONS, by_hand, folder, same, simulated};
 use crate::support::*;
@@ -136,8 +136,8 @@ fn figures_are_found_again_by_the_log_and_not_after_it_was_changed() {
     assert_eq!((&glance.code, glance.condition), (&header.session.participant.code, header.session.trial.condition));
     assert_eq!(glance.date, header.started);
     let caches = out.join("caches");
-    let figures =
-        CachedRecordingNumbers { arm: StudyArm::None, trial_s: 0.1 + 0.2, errors: 7, kind: RecordingKind::Trial };
+    let (kind, state) = (RecordingKind::Trial, RecordingState::EndedByWizard);
+    let figures = CachedRecordingNumbers { arm: StudyArm::None, trial_s: 0.1 + 0.2, errors: 7, kind, state };
     assert_eq!(ListCache::in_folder(&caches).figures(&glance.digest), None);
     ListCache::in_folder(&caches).keep([(glance.digest.clone(), figures)]);
     assert_eq!(ListCache::in_folder(&caches).figures(&glance.digest), Some(figures));

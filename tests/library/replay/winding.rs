@@ -4,6 +4,7 @@ use std::cell::Cell;
 
 use tomcom::run::seekable_replay::SeekableReplay;
 use tomcom_session::TimelineEvent;
+use tomcom_session::files::file_error::FileResult;
 use tomcom_session::replay::ReplayLandmark;
 
 use super::{SESSIONS, simulated};
@@ -164,4 +165,13 @@ fn a_replay_goes_from_one_error_signal_or_false_belief_to_the_next_and_back() {
     assert!(named.contains(": thinks ") && named.contains(", is "), "{named}");
     let moment = film.beliefs.until(film.time()).last().expect("an estimate");
     assert!(moment.held.iter().any(|held| held.is_false()), "{moment:?}");
+    // A plan hides the estimate from its wizard; at the console of a simulated trial there was none.
+    let log = recording.join(LOG_NAME);
+    let text = fs::read_to_string(&log).expect("a log");
+    let hidden = text.replacen("\"visibility\":\"recommendation\"", "\"visibility\":\"state\"", 1);
+    assert_ne!(hidden, text);
+    fs::write(&log, hidden).expect("written");
+    let shown = |film: FileResult<SeekableReplay>| film.expect("a recording").session.spec.console.visibility;
+    assert_eq!(shown(SeekableReplay::begin(&recording)), WizardVisibility::Belief);
+    assert_eq!(shown(SeekableReplay::begin(&recording).map(SeekableReplay::blinded)), WizardVisibility::State);
 }

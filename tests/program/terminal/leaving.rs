@@ -54,7 +54,7 @@ fn a_trial_that_was_left_ended_early_and_goes_on() {
         terminal.key("y");
         terminal.see("close the session");
         terminal.quit();
-        assert_eq!(terminal.listed("state"), "whole", "{name}");
+        assert_eq!(terminal.listed("state"), "ended_by_wizard", "{name}");
         let second = format!("{first}-part2");
         verified(Path::new(&second));
         let again = tomcom(&["operate", "--continue", &second]);

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::args::FitArgs;
 use super::failure::Failure;
-use super::list::gathered;
+use super::list::gathered_for_analysis;
 use super::output::{print, progress};
 use crate::run::files;
 use tomcom_study::analysis::fitting;
@@ -21,7 +21,7 @@ pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
         // The output file is checked before the long search.
         files::check_fitted(path).map_err(|error| unwritable(path, error))?;
     }
-    let recordings = gathered(&args.recordings)?;
+    let recordings = gathered_for_analysis(&args.recordings)?;
     let trials = fit::FitTrials::read(&recordings, args.probes)?;
     let named: Vec<_> = args.parameters.iter().map(|one| one.parameter()).collect();
     let parameters = fitting::choose(&named, start.as_ref().unwrap_or(&trials.model)).map_err(|(found, instead)| {

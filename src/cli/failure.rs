@@ -103,3 +103,10 @@ pub(super) fn wrong_setting(error: SettingError) -> Failure {
 pub(super) fn wrong_argument(path: &Path, found: String, remedy: &str) -> Failure {
     Failure::Wrong(miette::miette!(help = remedy.to_string(), "{}: found {found}", path.display()))
 }
+
+/// The failure of a simulation in which no trial of a program of other people came to its end.
+pub(super) fn every_trial_failed(why: &str) -> Failure {
+    let help =
+        "a program that answers each question; delete the failed recordings before the next try, since they are kept";
+    Failure::Failed(miette::miette!(help = help, "every trial failed: {why}"))
+}

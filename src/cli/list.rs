@@ -14,7 +14,7 @@ use tomcom_core::base::text::count;
 use tomcom_session::log::{LOG_NAME, LogReader};
 use tomcom_study::files::recordings;
 use tomcom_study::gathered::GatheredRecordings;
-use tomcom_study::planned_trial::copies_in_words;
+use tomcom_study::planned_trial::left_out_in_words;
 
 /// Largest number of recordings that a message names.
 const MOST_NAMED: usize = 12;
@@ -55,11 +55,17 @@ pub(super) fn each_chosen(paths: &[PathBuf], does: &'static str) -> Result<Vec<P
 
 /// Gathers the recordings at these paths, each trial once, and tells which are copies.
 pub(super) fn gathered(paths: &[PathBuf]) -> Result<GatheredRecordings, Failure> {
-    let found = GatheredRecordings::find(paths)?;
-    if let Some(copies) = copies_in_words(&found.copies) {
-        put_aside(&format!("{copies}\n"));
-    }
-    Ok(found)
+    Ok(told(GatheredRecordings::find(paths)?))
+}
+
+/// Gathers the recordings of one analysis, and tells which are left out.
+pub(super) fn gathered_for_analysis(paths: &[PathBuf]) -> Result<GatheredRecordings, Failure> {
+    Ok(told(GatheredRecordings::find(paths)?.without_foreign(&[])))
+}
+
+fn told(found: GatheredRecordings) -> GatheredRecordings {
+    put_aside(&left_out_in_words(&found.foreign, &found.copies));
+    found
 }
 
 /// Finds the recording at a path: if the path is a folder of recordings, the user chooses a recording at the terminal.

@@ -1,7 +1,7 @@
 //! Options of the command `tomcom simulate`, and their checks.
 
 use super::args::SimulateArgs;
-use super::failure::{Failure, wrong_argument};
+use super::failure::{Failure, every_trial_failed, wrong_argument};
 use super::lab::tell_carried;
 use super::output::{print, progress, put_aside};
 use super::rerun_messages::save_all;
@@ -69,7 +69,11 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     if args.rerun {
         save_all(&figures.recordings)?;
     }
-    print(args.format, &figures, || simulate::describe(&figures))
+    print(args.format, &figures, || simulate::describe(&figures))?;
+    match &figures.failed[..] {
+        [first, ..] if figures.failed.len() == figures.recordings.len() => Err(every_trial_failed(first)),
+        _ => Ok(()),
+    }
 }
 
 /// Reports assistant settings of the session file that only apply at the console: simulated trials ignore these

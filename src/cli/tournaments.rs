@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::choices::{ArmArg, concept};
-use super::failure::{Failure, wrong_argument};
+use super::failure::{Failure, every_trial_failed, wrong_argument};
 use super::output::{OutputFormat, print, progress, put};
 use crate::run::files::read_session;
 use crate::run::picture_file::{check_picture, write_picture};
@@ -105,5 +105,9 @@ pub(super) fn tournament(args: &TournamentArgs) -> Result<(), Failure> {
     if let Some(file) = &args.picture {
         write_picture(file, &charts::league(&found.concepts))?;
     }
-    print(args.format, &found, || describe(&found))
+    print(args.format, &found, || describe(&found))?;
+    match found.concepts.iter().find(|row| row.trials == 0 && row.failed > 0) {
+        Some(row) => Err(every_trial_failed(&row.concept)),
+        None => Ok(()),
+    }
 }

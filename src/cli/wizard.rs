@@ -7,7 +7,7 @@ use clap::Args;
 use super::choices::own_concept_parser;
 use super::failure::Failure;
 use super::lab::tell_carried;
-use super::list::{chosen, each_chosen, exists, gathered};
+use super::list::{chosen, each_chosen, exists, gathered_for_analysis};
 use super::operate::{OperateFlags, new_session};
 use super::output::{OutputFormat, print, progress, put};
 use crate::console::console_model::SPEEDS;
@@ -120,7 +120,7 @@ pub(super) fn compare(args: &CompareArgs) -> Result<(), Failure> {
         };
         return Ok(review_console::review(&chosen(recording, "follow")?, true, Some(&request(args.window)))?);
     }
-    let recordings = gathered(&each_chosen(&args.paths, "compare")?)?;
+    let recordings = gathered_for_analysis(&each_chosen(&args.paths, "compare")?)?;
     let windows: Vec<u32> = if args.sweep { similarity::SWEEP.collect() } else { vec![args.window] };
     let bar = progress((recordings.paths.len() * windows.len()) as u64, "recordings");
     let watch = |window: u32| similarity::watch(&recordings, &request(window), || bar.inc(1));

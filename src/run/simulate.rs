@@ -22,6 +22,7 @@ use tomcom_study::analysis::kitchen_summary::plan_lengths;
 use tomcom_study::analysis::trial_summary::{SimulationSummary, SimulationSums, StudyArmTotals};
 pub use tomcom_study::files::simulated_trials::SimulationRequest;
 use tomcom_study::files::simulated_trials::{describe_moved, each_trial};
+use tomcom_study::tournament::of_earlier_run;
 
 /// Simulates the trials on all processors. Trials whose complete recordings exist already are read instead. `done` is
 /// called after each trial.
@@ -35,13 +36,14 @@ pub fn simulate(simulation: &SimulationRequest, done: impl Fn() + Sync) -> Resul
         &simulation.files.kitchen.kitchen,
         &mut CostToGo::new(Arc::new(simulation.files.kitchen.kitchen.clone())),
     );
-    let (mut excluded, mut found, mut recordings, mut moved) = (0, 0, Vec::new(), Vec::new());
+    let (mut excluded, mut found, mut found_external, mut recordings, mut moved) = (0, 0, 0, Vec::new(), Vec::new());
     let outside = Outside { minds: &LocalMinds, now_ns: monotonic_ns };
     let mut failed = Vec::new();
     each_trial(simulation, outside, done, |trial| {
         moved.extend(trial.moved.map(|log| log.display().to_string()));
         recordings.push(trial.folder.clone().into());
         found += u64::from(trial.found);
+        found_external += u64::from(trial.found && trial.has_external_mind);
         if let Some(reason) = trial.failed {
             failed.push(format!("{}: {reason}", trial.folder.display()));
             return Ok(());
@@ -54,7 +56,7 @@ pub fn simulate(simulation: &SimulationRequest, done: impl Fn() + Sync) -> Resul
         Ok(())
     })?;
     let wall_s = began.elapsed().as_secs_f64();
-    Ok(SimulationSummary { excluded, failed, found, recordings, moved, wall_s, ..sums.figures() })
+    Ok(SimulationSummary { excluded, failed, found, found_external, recordings, moved, wall_s, ..sums.figures() })
 }
 
 /// Simulates a recording for wizard training: an unassisted trial of `seconds` in the default kitchen.
@@ -92,6 +94,10 @@ pub fn describe(figures: &SimulationSummary) -> String {
         0 => String::new(),
         some => format!(", {some} of them in an earlier run"),
     };
+    let earlier = match figures.found_external {
+        0 => String::new(),
+        some => of_earlier_run(some) + "\n",
+    };
     let moved = describe_moved(&figures.moved);
     let failed = match &figures.failed[..] {
         [] => String::new(),
@@ -118,7 +124,7 @@ pub fn describe(figures: &SimulationSummary) -> String {
          {}\n\
          {offers}\
          orders served: {}{each}\n\
-         {excluded}{failed}\
+         {earlier}{excluded}{failed}\
          recordings:\n{}\n{look}",
         count(figures.trials, "trial", "trials"),
         figures.simulated_s,

@@ -351,8 +351,8 @@ fn show(
     let until = now + SessionTime::from_secs_f64(session.spec.signals.shown_s);
     let advised =
         session.advice.as_ref().filter(|advice| by == Sender::Assistant && advice.best.as_ref() == Some(signal));
-    let reason = advised.and_then(|advice| advice.reason.clone());
-    session.shown = Some(ShownSignal { reason, signal: signal.clone(), location, by, since: now, until });
+    let (reason, words) = advised.map_or((None, None), |advice| (advice.reason.clone(), advice.words.clone()));
+    session.shown = Some(ShownSignal { reason, words, signal: signal.clone(), location, by, since: now, until });
     if by == Sender::Wizard {
         session.signalled_at = Some(now);
         let cool_down = SessionTime::from_secs_f64(session.spec.signals.cool_down_s);

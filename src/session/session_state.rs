@@ -111,6 +111,8 @@ pub struct ShownSignal {
     pub until: SessionTime,
     /// Why the assistant sent it; of a wizard's signal nothing is known.
     pub reason: Option<SignalReason>,
+    /// The reason in an external concept's own words.
+    pub words: Option<String>,
 }
 
 impl Session {

@@ -202,7 +202,8 @@ impl SessionSpec {
         }
     }
 
-    pub(crate) fn has_external_mind(&self) -> bool {
+    /// Whether a program of other people takes part.
+    pub fn has_external_mind(&self) -> bool {
         self.external_concept().is_some() || self.participant.kind == ParticipantKind::External
     }
 

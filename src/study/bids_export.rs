@@ -17,7 +17,7 @@ use crate::files::bids_tree::BidsTree;
 use crate::gathered::GatheredRecordings;
 use crate::kept_cost::KeptCost;
 use crate::pass::reading;
-use crate::planned_trial::{RecordingCopy, copies_in_words};
+use crate::planned_trial::{ForeignRecording, RecordingCopy, left_out_in_words};
 use crate::standing;
 use crate::trial_statistics::kind_name;
 use tomcom_core::base::text::{PathText, count};
@@ -34,6 +34,8 @@ pub struct BidsSummary {
     pub folder: PathText,
     pub changed_codes: Vec<(String, String)>,
     pub copies: Vec<RecordingCopy>,
+    /// Recordings of no plan beside those of a plan, and simulated ones beside those of people, which are left out.
+    pub foreign: Vec<ForeignRecording>,
     pub recordings: Vec<BidsRecording>,
     pub questionnaires: usize,
     pub words: bool,
@@ -58,7 +60,7 @@ struct Planned {
 /// exported, too. `done` is called after each recording. Errors: a recording cannot be read or is still being written,
 /// or the data set cannot be written.
 pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: impl Fn()) -> FileResult<BidsSummary> {
-    let GatheredRecordings { paths, copies, .. } = GatheredRecordings::find(recordings)?;
+    let GatheredRecordings { paths, copies, foreign, .. } = GatheredRecordings::find(recordings)?.without_foreign(&[]);
     let whole =
         paths.into_iter().map(|path| header(&path).map(|header| (path, header))).collect::<FileResult<Vec<_>>>()?;
     let labels = BidsLabelMap::from_names(whole.iter().map(|(_, header)| header.session.participant.code.as_str()));
@@ -86,6 +88,7 @@ pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: imp
         folder: folder.to_path_buf().into(),
         changed_codes: labels.changed(),
         copies,
+        foreign,
         recordings: told,
         questionnaires: asked.len() / 2,
         words: with_words,
@@ -221,7 +224,7 @@ pub fn describe(summary: &BidsSummary) -> String {
         )
     };
     let changed: String = changed.map(line).collect();
-    let copies = copies_in_words(&summary.copies).map_or(String::new(), |copies| format!("{copies}\n"));
+    let left_out = left_out_in_words(&summary.foreign, &summary.copies);
     let left = rows(|rows| rows.words_left_out);
     let words = match left {
         0 => String::new(),
@@ -232,7 +235,7 @@ pub fn describe(summary: &BidsSummary) -> String {
     };
     format!(
         "{}: {}\n{recordings}rows: {} events, {} gaze samples, {} fixations and blinks, {} arm samples, {} beliefs; \
-         {}\n{copies}{changed}{words}",
+         {}\n{left_out}{changed}{words}",
         summary.folder.display(),
         count(summary.recordings.len() as u64, "recording", "recordings"),
         rows(|rows| rows.events),

@@ -9,6 +9,7 @@ use crate::analysis::fitting::{
 };
 use crate::gathered::GatheredRecordings;
 use crate::parallel::WorkerPool;
+use crate::standing::exclusion_status;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::mind::fitting::{FitObservations, ProbeAnswerObservation, TrialLikelihood, likelihood};
@@ -24,26 +25,32 @@ pub struct FitTrials {
     pub kitchen: Arc<Kitchen>,
     pub model: HumanModel,
     pub others: Vec<OtherModel>,
+    /// Recordings that analyses do not count, each with the reason.
+    pub left_out: Vec<String>,
     pub observations: Vec<FitObservations>,
 }
 
 impl FitTrials {
-    /// Reads recordings for a fit; answers to freeze probes are read only with `probes`. Errors: a recording cannot be
+    /// Reads recordings for a fit, without practice and excluded ones; answers to freeze probes are read only with `probes`. Errors: a recording cannot be
     /// read or replayed; the recordings are of different kitchens; there are no answers although `probes` asks for
     /// them.
     pub fn read(recordings: &GatheredRecordings, probes: bool) -> FileResult<FitTrials> {
         let recordings = &recordings.paths;
-        let (mut one_kitchen, mut observations, mut models) =
-            (SameKitchenCheck::default(), Vec::new(), Vec::<(HumanModel, Vec<String>)>::new());
+        let (mut one_kitchen, mut observations, mut left_out) = (SameKitchenCheck::default(), Vec::new(), Vec::new());
+        let mut models = Vec::<(HumanModel, Vec<String>)>::new();
         for recording in recordings {
             let mut replay = RecordingReplay::open(recording)?;
             one_kitchen.admit(recording, &replay.session().kitchen)?;
-            let (model, name) = (&replay.session().spec.human, recording.display().to_string());
+            let (own, name) = (read_trial(&mut replay)?, recording.display().to_string());
+            if let Some(reason) = not_counted(&replay)? {
+                left_out.push(format!("{name}: {reason}"));
+                continue;
+            }
+            let model = &replay.session().spec.human;
             match models.iter_mut().find(|(known, _)| known == model) {
                 Some((_, made)) => made.push(name),
                 None => models.push((model.clone(), vec![name])),
             }
-            let own = read_trial(&mut replay)?;
             observations.push(if probes { own } else { FitObservations { answers: Vec::new(), ..own } });
         }
         if probes && observations.iter().all(|one| one.answers.is_empty()) {
@@ -59,7 +66,7 @@ impl FitTrials {
         let mut models = models.into_iter();
         let model = models.next().map(|(model, _)| model).unwrap_or_default();
         let others = models.map(|(model, recordings)| OtherModel { model: in_words(&model), recordings }).collect();
-        Ok(FitTrials { kitchen, model, others, observations })
+        Ok(FitTrials { kitchen, model, others, left_out, observations })
     }
 
     fn without_answers(&self) -> FitTrials {
@@ -67,6 +74,15 @@ impl FitTrials {
         trials.observations.iter_mut().for_each(|one| one.answers.clear());
         trials
     }
+}
+
+/// Why a recording that was read to its end is left out, in words; `None` for one that counts.
+fn not_counted(replay: &RecordingReplay) -> FileResult<Option<String>> {
+    if replay.session().spec.step.as_ref().is_some_and(|step| step.period.is_none()) {
+        return Ok(Some("practice".to_string()));
+    }
+    let standing = exclusion_status(replay.session(), replay.log())?;
+    Ok((!standing.counts()).then(|| standing.describe()))
 }
 
 /// Observations and probe answers of a recorded trial, without answers about what comes next.
@@ -125,6 +141,7 @@ fn fit_once(trials: &FitTrials, plan: &FitSettings, tried: impl Fn()) -> FitSumm
         found.into_iter().fold(TrialLikelihood::default(), TrialLikelihood::plus)
     };
     let number = trials.observations.len() as u64;
-    let recordings = FittedRecordings { number, model: &trials.model, others: &trials.others };
+    let recordings =
+        FittedRecordings { number, model: &trials.model, others: &trials.others, left_out: &trials.left_out };
     fitting::fit(recordings, plan, of_all, tried)
 }

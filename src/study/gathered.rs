@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use crate::files::recordings;
 use crate::frozen_plan::RecordedPlan;
-use crate::planned_trial::{PlannedTrialKey, RecordingCopy, copy_with_codes};
+use crate::planned_trial::{ForeignReason, ForeignRecording, PlannedTrialKey, RecordingCopy, copy_with_codes};
 use crate::{parallel, standing};
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::log::{LOG_NAME, LogReader, SameLogs, code_files, differing_codes, header_digest, ruling};
@@ -24,6 +24,8 @@ pub struct GatheredRecordings {
     /// In the order of `paths`.
     pub places: Vec<GatheredPlace>,
     pub copies: Vec<RecordingCopy>,
+    /// What [`GatheredRecordings::without_foreign`] left out, sorted.
+    pub foreign: Vec<ForeignRecording>,
 }
 
 /// Whose recording it is, and of which plan.
@@ -148,7 +150,36 @@ impl GatheredRecordings {
         let places = kept.iter().map(|&index| opened[index].place.clone()).collect();
         let paths = kept.into_iter().map(|index| opened[index].path.clone()).collect();
         let copies = order.iter().filter_map(|index| copies.remove(index)).collect();
-        Ok(GatheredRecordings { paths, places, copies })
+        Ok(GatheredRecordings { paths, places, copies, foreign: Vec::new() })
+    }
+
+    /// Without the recordings of no plan beside those of a plan, and without simulated ones beside those of people. `plans`:
+    /// names of the plans that are meant; empty: all.
+    pub fn without_foreign(self, plans: &[String]) -> GatheredRecordings {
+        let GatheredRecordings { paths, places, copies, mut foreign } = self;
+        let has_plan = places.iter().any(|place| place.plan.is_some());
+        let is_of_plan = |place: &GatheredPlace| match &place.plan {
+            Some(plan) => plans.is_empty() || plans.contains(plan),
+            None => !has_plan,
+        };
+        let has_people = places.iter().any(|place| is_of_plan(place) && !place.is_simulated);
+        let mut kept = (Vec::new(), Vec::new());
+        for (path, place) in paths.into_iter().zip(places) {
+            let reason = match (is_of_plan(&place), &place.plan) {
+                (true, _) if has_people && place.is_simulated => ForeignReason::Simulated,
+                (true, _) => {
+                    kept.0.push(path);
+                    kept.1.push(place);
+                    continue;
+                }
+                (false, None) => ForeignReason::NoPlan,
+                // The user names the plans that are meant.
+                (false, Some(_)) => continue,
+            };
+            foreign.push(ForeignRecording { reason, recording: name(&path) });
+        }
+        foreign.sort();
+        GatheredRecordings { paths: kept.0, places: kept.1, copies, foreign }
     }
 
     /// These, and then the others. Errors: a recording, or a copy of it, is among both.
@@ -212,6 +243,12 @@ impl FoundRecording {
         }
         Ok(RecordingCopy { recording, copy_of, left_out })
     }
+}
+
+/// The name of a recording's folder.
+pub(crate) fn name(recording: &Path) -> String {
+    let typed = recording.file_name().map(|name| name.to_string_lossy().into_owned());
+    typed.unwrap_or_else(|| recording.display().to_string())
 }
 
 fn folder_name(log: &Path) -> Cow<'_, str> {

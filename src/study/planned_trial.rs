@@ -132,6 +132,12 @@ pub fn copies_in_words(copies: &[RecordingCopy]) -> Option<String> {
     (!copies.is_empty()).then(|| format!("{are} not counted: {}", named.join("; ")))
 }
 
+/// Both as lines; empty if there are none.
+pub fn left_out_in_words(foreign: &[ForeignRecording], copies: &[RecordingCopy]) -> String {
+    let told = foreign_in_words(foreign).into_iter().chain(copies_in_words(copies));
+    told.map(|words| words + "\n").collect()
+}
+
 /// What is wrong about a copy of `first` beside whose log codes of raters stand that `first` has not, in the file `codes`,
 /// or has in another version (`is_there`); and what would be right.
 pub(crate) fn copy_with_codes(copy: &str, first: &str, (codes, is_there): (String, bool)) -> (String, String) {

@@ -331,7 +331,7 @@ const RESAMPLES: usize = 2000;
 const INTERVAL: [f64; 2] = [0.025, 0.975];
 
 /// Least number of units (such as participants) for an interval: resamples of fewer units are nearly all alike.
-const FEWEST: usize = 5;
+pub(crate) const FEWEST: usize = 5;
 
 /// The 95 % interval. `seed`: of the random stream. Panics: there are no trials.
 pub fn interval<T: Copy>(trials: &[T], seed: u64, statistic: impl Fn(&[T]) -> f64) -> [f64; 2] {

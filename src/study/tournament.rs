@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::arm_table::StudyArmStatistic;
 use crate::pass::contest::{BeliefScores, ContestTrial};
-use crate::statistics::interval_where_known;
+use crate::statistics::{FEWEST, interval_where_known};
 use tomcom_core::base::text::count;
 use tomcom_core::kitchen::Kitchen;
 
@@ -233,20 +233,28 @@ pub fn describe(found: &Tournament) -> String {
         let own = pair(row.own_auc, row.own_ece).map_or("-".to_string(), |own| format!("(ours {own})"));
         text += &format!(" | {ms} | {} |\n", told.map_or(own.clone(), |told| format!("{told} {own}")));
     }
+    let intervals = match found.trials {
+        few if few < FEWEST as u64 => format!("{} are too few for intervals", count(few, "trial", "trials")),
+        _ => "in brackets intervals of 95 %, by a bootstrap over trials".to_string(),
+    };
     text += &format!(
-        "\nper 100 presses of the human; differences to unassisted trials of the same seeds; in brackets intervals of \
-         95 %, by a bootstrap over trials\nnet saving: presses that errors cost less, minus {PAPERS_COST} for each signal\n"
+        "\nper 100 presses of the human; differences to unassisted trials of the same seeds; {intervals}\n\
+         net saving: presses that errors cost less, minus {PAPERS_COST} for each signal\n"
     );
     for row in found.concepts.iter().filter(|row| row.faults > 0) {
         text += &format!("{}: {} answers could not be used\n", row.concept, row.faults);
     }
     for row in found.concepts.iter().filter(|row| row.found > 0 && (row.name.is_some() || row.failed > 0)) {
-        let trials = count(row.found, "trial is", "trials are");
-        text +=
-            &format!("{}: {trials} of an earlier run; if the program was changed since, delete them\n", row.concept);
+        text += &format!("{}: {}\n", row.concept, of_earlier_run(row.found));
     }
     found.failures.iter().for_each(|failure| text += &format!("failed: {failure}\n"));
     text
+}
+
+/// What to know of trials with a program of other people that were not simulated now.
+pub fn of_earlier_run(trials: u64) -> String {
+    let trials = count(trials, "trial is", "trials are");
+    format!("{trials} of an earlier run; if the program was changed since, delete them")
 }
 
 /// Names of the columns of the CSV.

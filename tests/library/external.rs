@@ -19,7 +19,7 @@ use tomcom_session::external::{
 use tomcom_session::headless::{Outside, run_with};
 use tomcom_session::preflight_checks::{self, PreflightVerdict};
 use tomcom_session::watcher::{SenderComparisonFollower, SenderComparisonSettings};
-use tomcom_study::tournament::Tournament;
+use tomcom_study::tournament::{Tournament, describe};
 
 /// An agent in `sh`: `$1` answers the first question, `$2` any other one, where `$id` is the question's number.
 fn agent(first: &str, answer: &str) -> String {
@@ -130,6 +130,15 @@ fn a_program_acts_and_its_recording_needs_no_program() {
     let out = empty_folder("external-acts");
     let recordings = simulate_into(files(30.0, patient(&agent(HELLO, FIRST))), 2, &out);
     assert_eq!(recordings.len(), 2);
+    // The program can have been changed since.
+    let setup = files(30.0, patient(&agent(HELLO, FIRST)));
+    let again = SimulationRequest { files: setup, trials: 2, shard: SimulationShard::WHOLE, out };
+    let again = simulate(&again, || ()).expect("recordings");
+    let told = tomcom::run::simulate::describe(&again);
+    assert!(
+        told.contains("\n2 trials are of an earlier run; if the program was changed since, delete them\n"),
+        "{told}"
+    );
     for recording in recordings {
         let log = fs::read_to_string(recording.join(LOG_NAME)).expect("a recording");
         assert!(log.contains(r#""signal_shown","by":"assistant""#), "{log}");
@@ -463,6 +472,8 @@ fn a_tournament_compares_in_pairs_and_goes_on_where_it_was_cut() {
     // A second time nothing is simulated, and the table is the same; what was simulated before is told.
     assert_eq!(run(SimulationShard::WHOLE), whole);
     assert!(whole.concepts.iter().all(|row| row.found == 6) && halves[0].concepts.iter().all(|row| row.found == 0));
+    assert!(describe(&halves[0]).contains("; 3 trials are too few for intervals\n"), "{}", describe(&halves[0]));
+    assert!(describe(&whole).contains("; in brackets intervals of 95 %"), "{}", describe(&whole));
     // The unassisted trials are the reference, not a contestant that nobody asked for.
     assert!(row(&whole, "none").is_none() && out.join("none").is_dir());
 }

@@ -9,6 +9,7 @@ use tomcom_core::mind::fitting::HumanModelParameter;
 use tomcom_core::mind::model::HumanModel;
 use tomcom_core::mind::model::{PAPER_2021, PLAIN};
 use tomcom_session::headless::SimulationShard;
+use tomcom_session::log::rule;
 use tomcom_study::analysis::fitting::{FitSettings, choose, describe};
 use tomcom_study::fit::{FitTrials, fit};
 use tomcom_study::gathered::GatheredRecordings;
@@ -37,7 +38,9 @@ fn a_fit_says_which_recordings_were_made_with_which_model() {
     let root = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fit");
     let _ = fs::remove_dir_all(&root);
     let mut paths = Vec::new();
-    for (name, model, tau) in [("a", PAPER_2021, 4.0), ("b", PLAIN, 4.0), ("c", PLAIN, 3.0), ("d", PAPER_2021, 4.0)] {
+    for (name, model, tau) in
+        [("a", PAPER_2021, 4.0), ("b", PLAIN, 4.0), ("c", PLAIN, 3.0), ("d", PAPER_2021, 4.0), ("e", PLAIN, 5.0)]
+    {
         let mut files = read_session(Path::new("sessions/default.toml")).expect("the default session");
         files.spec.robot.arm = tomcom_session::settings::ArmKind::Timed;
         files.spec.trial.presses = 6;
@@ -47,6 +50,7 @@ fn a_fit_says_which_recordings_were_made_with_which_model() {
         simulate(&request, || ()).expect("a folder");
         paths.push(root.join(name));
     }
+    rule(&root.join("e/seed1-S001"), true, "the tracker slipped").expect("excluded");
     let trials = FitTrials::read(&GatheredRecordings::find(&paths).expect("recordings"), false).expect("trials");
     let plan = FitSettings { parameters: choose(&[], &trials.model).expect("parameters"), start: None, most_tries: 1 };
     let told = describe(&fit(&trials, &plan, || {}));
@@ -55,6 +59,7 @@ fn a_fit_says_which_recordings_were_made_with_which_model() {
     let line = |begin: &str| told.lines().find_map(|line| line.strip_prefix(begin)).unwrap_or_else(|| panic!("{told}"));
     assert!(line("made with plain: ").ends_with("fit/b/seed1-S001"), "{told}");
     assert!(line("made with plain with decision.tau = 3.0, not 4.0: ").ends_with("fit/c/seed1-S001"), "{told}");
-    assert!(!told.contains("fit/d"), "{told}");
+    assert!(line("left out of the analysis: ").ends_with("fit/e/seed1-S001: excluded: the tracker slipped"), "{told}");
+    assert!(told.starts_with("3 recordings, ") && !told.contains("fit/d"), "{told}");
     assert_eq!(line("not fitted: reading_rate_hz"), " is not used with observation = \"sample\"");
 }

@@ -145,8 +145,13 @@ fn what_is_none_of_the_study_is_left_out_and_named() {
         header["session"].as_object_mut().expect("settings").remove("step");
     });
     let extent = AnalysisScope { concepts: false, events: false };
-    let request =
-        AnalysisRequest { paths: vec![out], out: folder("foreign-results"), extent, raters: None, frozen: None };
+    let request = AnalysisRequest {
+        paths: vec![out.clone()],
+        out: folder("foreign-results"),
+        extent,
+        raters: None,
+        frozen: None,
+    };
     for plans in [vec![], vec!["paper".to_string()]] {
         let found = NamedRecordings::find(&request.paths, &plans).expect("recordings");
         let (figures, report) = pass::study(&request, &found, || ()).expect("analysed");
@@ -155,6 +160,10 @@ fn what_is_none_of_the_study_is_left_out_and_named() {
                      participant, beside those of people, and left out: P02-1";
         assert!(describe(&figures).contains(words), "{}", describe(&figures));
         assert!(fs::read_to_string(report).expect("a report").contains(words));
+        let told = bids_export::export(&request.paths, &root.join("bids"), false, || ()).expect("exported");
+        assert_eq!(told.recordings.len(), 1);
+        assert!(bids_export::describe(&told).contains(words));
+        fs::remove_dir_all(root.join("bids")).expect("removed");
     }
 }
 

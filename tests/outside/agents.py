@@ -32,7 +32,7 @@ arm = "timed"
 """
 
 
-def tomcom(*arguments: str | Path, environment: dict[str, str] | None = None, **options: object) -> str:
+def tomcom(*arguments: str | Path, environment: dict[str, str] | None = None, code: int = 0, **options: object) -> str:
     done = subprocess.run(
         [TOMCOM, *map(str, arguments)],
         cwd=SCRATCH,
@@ -41,7 +41,7 @@ def tomcom(*arguments: str | Path, environment: dict[str, str] | None = None, **
         text=True,
         **options,
     )
-    assert done.returncode == 0, f"{arguments}: {done.stderr}\n{done.stdout}"
+    assert done.returncode == code, f"{arguments}: {done.stderr}\n{done.stdout}"
     return done.stdout
 
 
@@ -231,14 +231,26 @@ def check_port() -> None:
 
 def check_faults() -> None:
     """A program with an error in it: where and what is told."""
-    (SCRATCH / "broken.py").write_text(
-        f"import sys; sys.path.insert(0, {str(PACKAGE)!r})\n"
-        "from tomcom.agent import Concept, run\n"
-        "class Broken(Concept):\n    def advise(self, question):\n        return question.sate\nrun(Broken())\n"
-    )
+    faults = {
+        "question.sate": "broken.py:5: AttributeError: ",
+        "Advice(values=[1.0])": "broken.py:5: TypeError: values is [1.0]; right would be a dict",
+        "Advice(values={'order_1': 1.0})": "broken.py:5: TypeError: a key of values is 'order_1'; right would be one of",
+        "Advice(values={Signal('highlight', 'moon'): 1.0})": "ValueError: values has highlight moon, which cannot be sent",
+        "Advice(belief={'order_1': {'none': 'x'}})": "broken.py:5: TypeError: belief['order_1']['none'] is 'x'; right",
+        "None": "TypeError: what Broken.advise returns is None; right would be an Advice",
+    }
     arguments = ["simulate", "session.toml", "--condition", "assistant", "--concept", f"{PYTHON} broken.py"]
-    told = tomcom(*arguments, "--trials", "2", "--out", SCRATCH / "broken")
-    assert "2 trials were aborted" in told and "broken.py:5: AttributeError: " in told, told
+    for number, (returned, words) in enumerate(faults.items()):
+        (SCRATCH / "broken.py").write_text(
+            f"import sys; sys.path.insert(0, {str(PACKAGE)!r})\n"
+            "from tomcom.agent import Advice, Concept, Signal, run\n"
+            f"class Broken(Concept):\n    def advise(self, question):\n        return {returned}\nrun(Broken())\n"
+        )
+        told = tomcom(*arguments, "--trials", "2", "--out", SCRATCH / f"broken-{number}", code=1)
+        assert "2 trials were aborted" in told and words in told, told
+    # The failed trials are kept, which is told.
+    told = tomcom(*arguments, "--trials", "2", "--out", SCRATCH / "broken-0", code=1)
+    assert "2 trials are of an earlier run; if the program was changed since" in told, told
     print("faults: an error is told with its line")
 
 

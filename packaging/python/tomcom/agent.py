@@ -17,6 +17,7 @@ Put `concept = { external = "python my_agent.py" }` under `[assistant]` of a ses
 from __future__ import annotations
 
 import json
+import math
 import random
 import socket
 import sys
@@ -213,6 +214,39 @@ class ParticipantQuestion:
     display: dict[str, Any]
 
 
+# What an answer has is checked where it is made, so that an error names the agent's own line.
+
+
+def _wrong(field: str, found: object, right: str) -> TypeError:
+    return TypeError(f"{field} is {found!r}; right would be {right}")
+
+
+def _check(field: str, found: object, kind: type, right: str) -> None:
+    if not isinstance(found, kind):
+        raise _wrong(field, found, right)
+
+
+def _number(field: str, found: Any) -> float:
+    """Also of another package's number."""
+    try:
+        number = math.nan if isinstance(found, str) else float(found)
+    except (TypeError, ValueError):
+        number = math.nan
+    if not math.isfinite(number):
+        raise _wrong(field, found, "a number")
+    return number
+
+
+def _belief(belief: Belief) -> dict[str, dict[str, float]]:
+    _check("belief", belief, Mapping, "a dict from aspects to the probabilities of their values")
+    for aspect, values in belief.items():
+        _check(f"belief[{aspect!r}]", values, Mapping, "a dict from values to probabilities")
+    return {
+        aspect: {value: _number(f"belief[{aspect!r}][{value!r}]", p) for value, p in values.items()}
+        for aspect, values in belief.items()
+    }
+
+
 @dataclass(frozen=True)
 class Advice:
     """What a concept answers: values for signals, or a signal to send, or neither."""
@@ -222,6 +256,19 @@ class Advice:
     reason: str | None = None
     belief: Belief | None = None
 
+    def __post_init__(self) -> None:
+        if self.values is not None:
+            _check("values", self.values, Mapping, "a dict from signals to the presses that they save")
+            for signal, value in self.values.items():
+                _check("a key of values", signal, Signal, "one of question.signals")
+                _number(f"values[{signal}]", value)
+        if self.send is not None:
+            _check("send", self.send, Signal, "one of question.signals")
+        if self.reason is not None:
+            _check("reason", self.reason, str, "a text")
+        if self.belief is not None:
+            _belief(self.belief)
+
     @staticmethod
     def silent(reason: str | None = None, belief: Belief | None = None) -> Advice:
         return Advice(None, None, reason, belief)
@@ -229,6 +276,9 @@ class Advice:
     def answer(self, question: ConceptQuestion) -> dict[str, Any]:
         answer: dict[str, Any] = {"id": question.id}
         if self.values is not None:
+            if unknown := set(self.values) - set(question.signals):
+                can_be_sent = ", ".join(map(str, question.signals))
+                raise ValueError(f"values has {min(unknown, key=str)}, which cannot be sent now; right would be: {can_be_sent}")
             # What has no value is not worth sending.
             answer["values"] = [float(self.values.get(signal, -1e6)) for signal in question.signals]
         if self.send is not None:
@@ -236,7 +286,7 @@ class Advice:
         if self.reason is not None:
             answer["reason"] = self.reason
         if self.belief is not None:
-            answer["belief"] = {name: dict(values) for name, values in self.belief.items()}
+            answer["belief"] = _belief(self.belief)
         return answer
 
 
@@ -248,12 +298,20 @@ class Move:
     after_s: float | None = None
     belief: Belief | None = None
 
+    def __post_init__(self) -> None:
+        if self.press is not None:
+            _check("press", self.press, str, "the name of a button")
+        if self.after_s is not None:
+            _number("after_s", self.after_s)
+        if self.belief is not None:
+            _belief(self.belief)
+
     def answer(self, question: ParticipantQuestion) -> dict[str, Any]:
         answer: dict[str, Any] = {"id": question.id, "press": self.press}
         if self.after_s is not None:
-            answer["after_s"] = self.after_s
+            answer["after_s"] = float(self.after_s)
         if self.belief is not None:
-            answer["belief"] = {name: dict(values) for name, values in self.belief.items()}
+            answer["belief"] = _belief(self.belief)
         return answer
 
 
@@ -299,9 +357,13 @@ def _answer(mind: Concept | Participant, told: Mapping[str, Any]) -> dict[str, A
         return {"id": told["id"], "protocol": PROTOCOL, "name": mind.name or type(mind).__name__}
     if isinstance(mind, Concept):
         question = ConceptQuestion.read(told)
-        return mind.advise(question).answer(question)
+        advice = mind.advise(question)
+        _check(f"what {type(mind).__name__}.advise returns", advice, Advice, "an Advice")
+        return advice.answer(question)
     seen = ParticipantQuestion(**_known(ParticipantQuestion, told))
-    return mind.act(seen).answer(seen)
+    move = mind.act(seen)
+    _check(f"what {type(mind).__name__}.act returns", move, Move, "a Move")
+    return move.answer(seen)
 
 
 def answers(mind: Concept | Participant, lines: Iterable[str]) -> Iterable[str]:
@@ -334,7 +396,8 @@ def _serve(mind: Concept | Participant, questions: TextIO, out: TextIO) -> None:
             out.flush()
     except Exception as error:
         traceback.print_exc()
-        # The last line is what tomcom tells: it says where.
-        frames = traceback.extract_tb(error.__traceback__)
-        place = next((one for one in reversed(frames) if one.filename != __file__), frames[-1])
-        sys.exit(f"{Path(place.filename).name}:{place.lineno}: {type(error).__name__}: {error}")
+        # The last line is what tomcom tells: it says where, if not in this file and the methods that dataclasses make.
+        frames = reversed(traceback.extract_tb(error.__traceback__))
+        place = next((one for one in frames if one.filename not in (__file__, "<string>")), None)
+        where = f"{Path(place.filename).name}:{place.lineno}: " if place else ""
+        sys.exit(f"{where}{type(error).__name__}: {error}")

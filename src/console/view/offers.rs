@@ -221,21 +221,20 @@ fn closed(session: &Session, model: &ConsoleModel) -> Option<String> {
 }
 
 /// What the line of the offer says while nothing is on offer. While the trial runs, its text changes only when a belief
-/// becomes false or true.
+/// becomes false or true, or an external concept has something to say.
 fn why_no_offer(session: &Session, model: &ConsoleModel, believed: &[EstimatedBelief]) -> String {
     if let Some(over) = session.external.over.get(&MindRole::Concept) {
         return over.clone();
     }
+    let may_see = beliefs::visibility(session, model) == WizardVisibility::Recommendation;
     if session.spec.trial.condition == Condition::Assistant {
-        let reason = session.shown.as_ref().and_then(|shown| shown.reason.as_ref());
-        let may_see = beliefs::visibility(session, model) == WizardVisibility::Recommendation;
-        return match reason.filter(|_| may_see).map(|reason| wording::reason(&session.kitchen, reason)) {
-            Some(reason) => {
-                let shown = session.shown.as_ref().map(|shown| wording::signal(&shown.signal)).unwrap_or_default();
-                format!("The assistant's {shown}: thought {}, is {}", reason.believes, reason.truth)
-            }
-            None => "The assistant sends the signals, without the wizard".to_string(),
-        };
+        let why = session.shown.as_ref().filter(|_| may_see).and_then(|shown| {
+            let reason = shown.reason.as_ref().map(|reason| wording::reason(&session.kitchen, reason));
+            let reason = reason.map(|reason| format!("thought {}, is {}", reason.believes, reason.truth));
+            let why = reason.or_else(|| shown.words.as_deref().map(|words| printable(words).into_owned()))?;
+            Some(format!("The assistant's {}: {why}", wording::signal(&shown.signal)))
+        });
+        return why.unwrap_or_else(|| "The assistant sends the signals, without the wizard".to_string());
     }
     if !session.spec.asks_assistant() {
         return "The assistant does not advise in this session (shadow = \"off\")".to_string();
@@ -247,6 +246,10 @@ fn why_no_offer(session: &Session, model: &ConsoleModel, believed: &[EstimatedBe
             return "The session was left before its trial was over".to_string();
         }
         TrialPhase::Over(_) | TrialPhase::Closed => return "The trial is over".to_string(),
+    }
+    let advice = session.advice.as_ref().filter(|_| may_see);
+    if let Some(words) = advice.and_then(|advice| advice.words.as_deref()) {
+        return printable(words).into_owned();
     }
     match believed.iter().filter(|belief| belief.standing == BeliefCorrectness::False).count() as u64 {
         0 => NOTHING_TO_SAY.to_string(),

@@ -171,6 +171,8 @@ pub struct SimulationSummary {
     pub failed: Vec<String>,
     /// Number of complete recordings that already existed and were read instead of simulated anew.
     pub found: u64,
+    /// Number of those in which a program of other people takes part, which can have been changed since.
+    pub found_external: u64,
     /// New paths of logs that end within their header, as after a power failure; simulated anew.
     pub moved: Vec<String>,
     pub arms: Vec<StudyArmTotals>,

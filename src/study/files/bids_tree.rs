@@ -9,6 +9,7 @@ use flate2::{Compression, GzBuilder};
 use crate::analysis::bids::BidsFile;
 use crate::analysis::bids::dataset::{CODE_COLUMN, DESCRIPTION_NAME, PARTICIPANTS, PROGRAM_NAME};
 use crate::analysis::bids::recording_tables::{LongTableFacts, LongTableRow};
+use crate::files::new_folder::NewFolder;
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::files::file_error::{FileError, FileResult, read_regular};
 
@@ -17,6 +18,7 @@ const REMEDY: &str = "a new folder on a disk with free space";
 #[derive(Debug)]
 pub struct BidsTree {
     root: PathBuf,
+    _new: NewFolder,
 }
 
 impl BidsTree {
@@ -30,12 +32,11 @@ impl BidsTree {
                     return Err(FileError::from_finding(root, found, "a new or empty folder".to_string()));
                 }
             }
-            Err(reason) if reason.kind() == ErrorKind::NotFound => {
-                fs::create_dir_all(root).map_err(|reason| FileError::not_written(root, reason, REMEDY))?;
-            }
+            Err(reason) if reason.kind() == ErrorKind::NotFound => {}
             Err(reason) => return Err(FileError::unreadable(root, reason, REMEDY)),
         }
-        Ok(BidsTree { root: root.to_path_buf() })
+        let new = NewFolder::create(root).map_err(|reason| FileError::not_written(root, reason, REMEDY))?;
+        Ok(BidsTree { root: root.to_path_buf(), _new: new })
     }
 
     /// `name` is the path below the root folder; what ends with `.gz` is compressed.

@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use csv::{ByteRecord, ReaderBuilder};
 
 use crate::column::{CsvRow, CsvTable, TableCell, TableColumn, described};
+use crate::files::new_folder::NewFolder;
 use crate::report;
 use crate::study_part::AnalysedRecording;
 use tomcom_core::base::text::without_formula;
@@ -98,37 +99,30 @@ impl TableFile {
     }
 }
 
+/// What is kept in it until all recordings are read goes with this value.
 #[derive(Debug)]
 pub struct AnalysisFolder {
     folder: PathBuf,
+    _new: NewFolder,
+}
+
+impl Drop for AnalysisFolder {
+    fn drop(&mut self) {
+        // The next analysis removes what could not be removed.
+        let _ = remove_parts(&self.parts());
+    }
 }
 
 impl AnalysisFolder {
     /// Creates the output folder of an analysis if the folder does not exist. Errors: the folder cannot be created or
     /// written to, or it contains files that have the names of tables or report but that this program did not write.
     pub fn create(folder: &Path) -> Result<AnalysisFolder, AnalysisWriteError> {
-        let export = AnalysisFolder { folder: folder.to_path_buf() };
-        export.check_replaced()?;
+        check_replaced(folder)?;
+        let export = AnalysisFolder { folder: folder.to_path_buf(), _new: at(folder, NewFolder::create(folder))? };
         let parts = export.parts();
         // Temporary files that an interrupted analysis left are removed.
-        at(&parts, remove_parts(&parts).and_then(|()| fs::create_dir_all(&parts)))?;
+        at(&parts, remove_parts(&parts).and_then(|()| fs::create_dir(&parts)))?;
         Ok(export)
-    }
-
-    fn check_replaced(&self) -> Result<(), AnalysisWriteError> {
-        let written = at(&self.folder, ListedTables::read(&self.folder))?;
-        for &table in CsvTable::ALL {
-            let path = self.folder.join(format!("{}.csv", table.name()));
-            let is_own = |head: &[u8]| {
-                let mut header = csv::ByteRecord::new();
-                reader(head).read_byte_record(&mut header).unwrap_or(false) && written.has(table.name(), &header)
-            };
-            let what = format!("the table \"{}\"", table.name());
-            at(&path, overwrite::check(&path, &what, is_own))?;
-        }
-        let path = self.folder.join(REPORT_NAME);
-        let is_own = |head: &[u8]| report::participants_of_page(&String::from_utf8_lossy(head)).is_some();
-        at(&path, overwrite::check(&path, "a report", is_own))
     }
 
     fn parts(&self) -> PathBuf {
@@ -158,11 +152,6 @@ impl AnalysisFolder {
         let path = self.part(index, ANALYSED);
         let read = fs::read(&path).and_then(|text| serde_json::from_slice(&text).map_err(io::Error::from));
         at(&path, read)
-    }
-
-    pub fn remove_kept(&self) -> Result<(), AnalysisWriteError> {
-        let path = self.parts();
-        at(&path, remove_parts(&path))
     }
 
     pub fn begin(&self, table: CsvTable) -> Result<TableFile, AnalysisWriteError> {
@@ -223,6 +212,22 @@ impl AnalysisFolder {
         at(&path, replace_file::replace(&path, page.as_bytes()))?;
         Ok(path)
     }
+}
+
+fn check_replaced(folder: &Path) -> Result<(), AnalysisWriteError> {
+    let written = at(folder, ListedTables::read(folder))?;
+    for &table in CsvTable::ALL {
+        let path = folder.join(format!("{}.csv", table.name()));
+        let is_own = |head: &[u8]| {
+            let mut header = csv::ByteRecord::new();
+            reader(head).read_byte_record(&mut header).unwrap_or(false) && written.has(table.name(), &header)
+        };
+        let what = format!("the table \"{}\"", table.name());
+        at(&path, overwrite::check(&path, &what, is_own))?;
+    }
+    let path = folder.join(REPORT_NAME);
+    let is_own = |head: &[u8]| report::participants_of_page(&String::from_utf8_lossy(head)).is_some();
+    at(&path, overwrite::check(&path, "a report", is_own))
 }
 
 fn names(table: CsvTable) -> Vec<Cow<'static, str>> {

@@ -3,6 +3,7 @@
 pub mod annotation_files;
 pub mod bids_tree;
 pub mod export;
+pub mod new_folder;
 pub mod pool_file;
 pub mod pupil_timestamps;
 pub mod recordings;

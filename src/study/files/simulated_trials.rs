@@ -62,6 +62,8 @@ pub struct SimulatedTrial {
     pub figures: TrialSummary,
     /// Whether the trial's recording existed before, or another program made it in the meantime.
     pub found: bool,
+    /// Whether a program of other people took part, or was to.
+    pub has_external_mind: bool,
     /// New path of a log that ended before the end of its header and was moved out of the way.
     pub moved: Option<PathBuf>,
     /// Computing time of the assistant; `None` of a recording that existed before.
@@ -174,9 +176,10 @@ fn simulate_trial(
         }
     };
     let failed = follower.session.aborted.clone();
+    let has_external_mind = follower.session.spec.has_external_mind();
     let (arm, figures) = (follower.session.study_arm(), TrialSummary::from_follower(&follower));
     kept.keep(kitchen, follower.cost);
-    Ok(SimulatedTrial { folder, arm, figures, found, moved, advice, failed })
+    Ok(SimulatedTrial { folder, arm, figures, found, has_external_mind, moved, advice, failed })
 }
 
 pub fn describe_moved(moved: &[String]) -> String {

@@ -22,11 +22,11 @@ use crate::figures::{CorrectedRecording, StudySummary};
 use crate::files::export::{AnalysisFolder, AnalysisWriteError};
 use crate::files::pool_file::read_frozen;
 use crate::frozen_plan::{FrozenPlan, PreregistrationCheck, RecordedPlan};
-use crate::gathered::{GatheredPlace, GatheredRecordings};
+use crate::gathered::{GatheredPlace, GatheredRecordings, name};
 use crate::kept_cost::KeptCost;
 use crate::pass::reading::{AnalysisScope, RecordedConsent, WaivedPractice};
 pub use crate::pass::tell::{describe, describe_arms};
-use crate::planned_trial::{ForeignReason, ForeignRecording, RecordingCopy, missing_trials};
+use crate::planned_trial::{ForeignRecording, RecordingCopy, missing_trials};
 use crate::study_part::AnalysedRecording;
 use crate::tables::communications::concepts;
 use crate::tables::participants::{
@@ -78,30 +78,11 @@ impl NamedRecordings {
     /// plan beside those of a plan, and simulated ones beside those of people, are left out.
     pub fn find(paths: &[PathBuf], plans: &[String]) -> Result<NamedRecordings, StudyError> {
         let first = paths.first().cloned().unwrap_or_default();
-        let GatheredRecordings { paths, places, copies } = GatheredRecordings::find(paths)?;
-        check_plans(&places, plans).map_err(|(found, remedy)| FileError::from_finding(&first, found, remedy))?;
-        let has_plan = places.iter().any(|place| place.plan.is_some());
-        let is_of_plan = |place: &GatheredPlace| match &place.plan {
-            Some(plan) => plans.is_empty() || plans.contains(plan),
-            None => !has_plan,
-        };
-        let has_people = places.iter().any(|place| is_of_plan(place) && !place.is_simulated);
-        let (mut found, mut foreign) = (Vec::new(), Vec::new());
-        for (path, place) in paths.into_iter().zip(&places) {
-            let name = name(&path);
-            let reason = match (is_of_plan(place), &place.plan) {
-                (true, _) if has_people && place.is_simulated => ForeignReason::Simulated,
-                (true, _) => {
-                    found.push((path, name));
-                    continue;
-                }
-                (false, None) => ForeignReason::NoPlan,
-                // The user names the plans that are meant.
-                (false, Some(_)) => continue,
-            };
-            foreign.push(ForeignRecording { reason, recording: name });
-        }
-        foreign.sort();
+        let gathered = GatheredRecordings::find(paths)?;
+        check_plans(&gathered.places, plans)
+            .map_err(|(found, remedy)| FileError::from_finding(&first, found, remedy))?;
+        let GatheredRecordings { paths, copies, foreign, .. } = gathered.without_foreign(plans);
+        let mut found: Vec<(PathBuf, String)> = paths.into_iter().map(|path| (path.clone(), name(&path))).collect();
         // Recordings from several folders with the same name are identified by their full paths.
         let names: Vec<String> = found.iter().map(|(_, name)| name.clone()).collect();
         for (path, name) in &mut found {
@@ -167,11 +148,6 @@ fn check_plans(places: &[GatheredPlace], wanted: &[String]) -> Result<(), (Strin
         }
     }
     Ok(())
-}
-
-fn name(recording: &Path) -> String {
-    let typed = recording.file_name().map(|name| name.to_string_lossy().into_owned());
-    typed.unwrap_or_else(|| recording.display().to_string())
 }
 
 /// Analyses recordings of one kitchen and calls `done` after each. Returns the summary and the report's path. Errors: a
@@ -318,7 +294,6 @@ fn conclude(
     };
     let events: Vec<usize> = if extent.events { kept.into_values().collect() } else { Vec::new() };
     filled.extend(export.tables_of_events(&events)?);
-    export.remove_kept()?;
     let columns = ParticipantRow::columns_of(&trials);
     filled.extend(export.table_of_columns(&columns, participants(&trials, &consents))?);
     filled.extend(export.table::<TrialStatistics>(&trials)?);

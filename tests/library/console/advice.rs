@@ -178,6 +178,19 @@ fn while_nothing_is_offered_the_line_changes_only_with_the_beliefs() {
 }
 
 #[test]
+fn an_external_concept_says_why_in_its_own_words() {
+    let mut stage = advised(false);
+    let recipe = Signal::ShowRecipe("order_1".to_string());
+    let words = Some("it is\tnew".to_string());
+    let advice = Recommendation { best: Some(recipe.clone()), words, ..Recommendation::silent(18, at(23.0)) };
+    stage.at(23.0, Event::Advised(advice));
+    stage.shows_everywhere(&["it is\\tnew"]);
+    stage.session.spec.trial.condition = Condition::Assistant;
+    stage.at(23.1, Event::SignalShown { by: Sender::Assistant, signal: recipe, offer: None });
+    stage.shows_everywhere(&["The assistant's recipe of order 1: it is\\tnew"]);
+}
+
+#[test]
 fn an_offer_that_holds_still_keeps_its_row_among_the_signals() {
     let mut stage = advised(true);
     let advice = stage.session.advice.as_mut().expect("an advice");

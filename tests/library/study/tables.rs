@@ -337,7 +337,7 @@ fn analysed_recordings_are_kept_in_files_until_all_are_read() {
     export.keep_analysed(1, &practice).expect("a file");
     assert_eq!(export.kept_analysed(0).expect("kept"), recording);
     assert_eq!(export.kept_analysed(1).expect("kept"), practice);
-    export.remove_kept().expect("removed");
+    drop(export);
     assert!(fs::read_dir(&folder).expect("a folder").next().is_none(), "nothing is left");
 }
 
@@ -351,7 +351,7 @@ fn tables_of_events_say_what_happened() {
     // Nobody could see an offer.
     let written: Vec<CsvTable> = CsvTable::OF_EVENTS.into_iter().filter(|&table| table != CsvTable::Offers).collect();
     assert_eq!(export.tables_of_events(&[0]).expect("tables"), written);
-    export.remove_kept().expect("removed");
+    drop(export);
     assert!(!folder.join(".rows").exists());
     let actions = |column: &str| fields(&folder, CsvTable::Actions, column);
     let agents = actions("agent");

@@ -66,6 +66,19 @@ fn simulate_records_what_replay_verifies() {
 }
 
 #[test]
+fn it_is_a_failure_if_every_trial_of_a_program_fails() {
+    let out = folder("every-trial-failed");
+    let out = out.to_str().expect("a path in UTF-8");
+    let [acts, league] = [["--condition", "assistant", "--concept"].as_slice(), &["--concepts"]];
+    for (command, concept) in [("simulate", acts), ("tournament", league)] {
+        let simulate = [command, "sessions/default.toml", "--arm", "timed", "--trials", "1", "--out", out];
+        let failed = check(&[&simulate[..], concept, &["exit 7; /"]].concat(), 1);
+        let told = String::from_utf8_lossy(&failed.stderr);
+        assert!(told.contains("every trial failed: ") && !failed.stdout.is_empty(), "{told}");
+    }
+}
+
+#[test]
 fn a_simulation_replaces_itself_and_no_other_recording() {
     let out = folder("replaced");
     let out = out.to_str().expect("a path in UTF-8");

@@ -37,7 +37,7 @@ fn trials(kitchen: &Arc<Kitchen>, model: &HumanModel, experiment: &Experiment) -
         observations.push(FitObservations { seed: index, observations: of_trial, answers: Vec::new() });
         cost = world.cost;
     }
-    FitTrials { kitchen: kitchen.clone(), model: model.clone(), others: Vec::new(), observations }
+    FitTrials { kitchen: kitchen.clone(), model: model.clone(), others: Vec::new(), left_out: Vec::new(), observations }
 }
 
 /// Fits, tells, and demands that each parameter is within this number of standard errors of the truth, on the scale of the fit.

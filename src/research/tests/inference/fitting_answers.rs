@@ -92,7 +92,7 @@ fn probed(people: u64, presses: usize) -> (FitTrials, HumanModel) {
         observations.push(trial);
         cost = world.cost;
     }
-    (FitTrials { kitchen, model: start, others: Vec::new(), observations }, truth)
+    (FitTrials { kitchen, model: start, others: Vec::new(), left_out: Vec::new(), observations }, truth)
 }
 
 /// A belief over two values of which both are as likely, and over three of which one is: by the uniform density of the simplex, and its

@@ -65,6 +65,7 @@ pub struct FittedRecordings<'a> {
     pub number: u64,
     pub model: &'a HumanModel,
     pub others: &'a [OtherModel],
+    pub left_out: &'a [String],
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -90,6 +91,8 @@ pub struct FitSummary {
     pub begins_with_recordings: bool,
     pub begins_with: String,
     pub others: Vec<OtherModel>,
+    /// Recordings that analyses do not count, each with the reason.
+    pub left_out: Vec<String>,
     /// Why usual parameters were not fitted: the model does not use them, or they begin outside of the search.
     pub not_fitted: Vec<String>,
     pub converged: bool,
@@ -199,7 +202,8 @@ pub fn fit(
         begins_with_recordings: plan.start.is_none(),
         begins_with: in_words(begin),
         others: trials.others.to_vec(),
-        not_fitted: left_out(&plan.parameters, begin),
+        left_out: trials.left_out.to_vec(),
+        not_fitted: not_fitted(&plan.parameters, begin),
         converged,
         parameters: fitted.map(|(one, found)| FittedParameter::from_variable(*one, one.get(begin), found)).collect(),
         model,
@@ -281,12 +285,13 @@ pub fn describe(fit: &FitSummary) -> String {
 }
 
 fn beside(fit: &FitSummary) -> String {
-    let left_out = fit.not_fitted.iter().map(|why| format!("not fitted: {why}\n"));
+    let left_out = fit.left_out.iter().map(|one| format!("left out of the analysis: {one}\n"));
+    let not_fitted = fit.not_fitted.iter().map(|why| format!("not fitted: {why}\n"));
     let others = fit.others.iter().map(|one| format!("made with {}: {}\n", one.model, one.recordings.join(", ")));
-    left_out.chain(others).collect()
+    left_out.chain(not_fitted).chain(others).collect()
 }
 
-fn left_out(fitted: &[HumanModelParameter], model: &HumanModel) -> Vec<String> {
+fn not_fitted(fitted: &[HumanModelParameter], model: &HumanModel) -> Vec<String> {
     let others = HumanModelParameter::USUAL.into_iter().filter(|usual| !fitted.contains(usual));
     others.filter_map(|usual| Some(usual.obstacle(model)?.0)).collect()
 }

@@ -164,13 +164,13 @@ const Room = (scene, fontFamily) => {
   function forLesson(recipe, page) {
     const [robots, humans] = sides(), middle = table(), y = robots[1] + 0.05, w = robots[2], tags = scene.tags.map(({ area }) => area).filter((area) => area[1] > y);
     const end = Math.min(robots[1] + robots[3], ...tags.map((area) => area[1] - 0.012)), lefts = [robots[0], humans[0] + humans[2] - w, middle[0] + (middle[2] - w) / 2];
-    return [Room.leastHidden(lefts.map((x) => [x, y, w, end - y]), Room.isAbout(scene, { robot: robots, human: humans, table: middle }, recipe, page)).area];
+    return Room.leastHidden(lefts.map((x) => [x, y, w, end - y]), Room.isAbout(scene, { robot: robots, human: humans, table: middle }, recipe, page));
   }
 
   return {
     isUpright: false, placed: scene, em: [0.01, 0.01 * ratio],
     widthOf, nameSize: (spot) => 100 * nameSize(spot), sides, table, base, taken, forPill, forStatus, forRecipe,
-    forLesson, enough: 1,
+    forLesson,
   };
 };
 
@@ -180,9 +180,9 @@ Room.isAbout = (scene, zones, recipe, { kind, frames }) => {
   return [...frames.map(areaOf), recipe, kind === "robot" && zones.robot].filter(Boolean);
 };
 
-/** The first of these areas that hides least of others, and how much that is. */
+/** The first of these areas that hides least of others. */
 Room.leastHidden = (areas, others) => {
   const across = (from, wide, other, much) => Math.max(0, Math.min(from + wide, other + much) - Math.max(from, other));
   const hides = ([x, y, w, h]) => others.reduce((sum, [ax, ay, aw, ah]) => sum + across(x, w, ax, aw) * across(y, h, ay, ah), 0);
-  return areas.map((area) => ({ area, hides: hides(area) })).reduce((best, one) => (one.hides < best.hides - 1e-9 ? one : best));
+  return areas.map((area) => ({ area, hides: hides(area) })).reduce((best, one) => (one.hides < best.hides - 1e-9 ? one : best)).area;
 };

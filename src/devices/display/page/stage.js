@@ -305,14 +305,13 @@ const Stage = (() => {
     return { picture, label: does === "use" ? named(spot.label) : label };
   }
 
-  /** Makes the words smaller until no name is broken and none is higher than its line; returns their size. */
+  /** Makes the words smaller until no name is broken and none is higher than its line. */
   function fitWords(made) {
     const fits = (said) => said.scrollWidth <= said.clientWidth && said.scrollHeight <= said.parentNode.clientHeight;
     for (let size = 1; size > 0.5; size -= 0.05) {
       made.style.setProperty("--words", size);
-      if ([...made.querySelectorAll("figcaption, .dish, h1, h2, p")].every(fits) && made.scrollHeight <= made.clientHeight) return size;
+      if ([...made.querySelectorAll("figcaption, .dish, h1, h2, p")].every(fits) && made.scrollHeight <= made.clientHeight) return;
     }
-    return 0;
   }
 
   function drawIntention(spot) {
@@ -354,8 +353,8 @@ const Stage = (() => {
     parts.sheet.className = `sheet ${stage === "running" ? "" : "open"} ${BIG.includes(stage) ? "big" : ""} ${stage}`;
     if (stage === "questionnaire" && sight.question) return Questions.draw(parts.sheet, sight.question, scene.words, { element, text });
     if (sight.tutorial) {
-      const recipe = sight.signal && sight.signal.recipe, areas = room.forLesson(recipe && parts.cards[recipe.order], sight.tutorial);
-      return Tutorial.draw(parts.sheet, sight.tutorial, { scene, areas, enough: room.enough, badges: badges(), element, text, put, partOf, fitWords, contentOf, draws: drawContents, contents: sight.contents });
+      const recipe = sight.signal && sight.signal.recipe, area = room.forLesson(recipe && parts.cards[recipe.order], sight.tutorial);
+      return Tutorial.draw(parts.sheet, sight.tutorial, { scene, area, badges: badges(), element, text, put, partOf, fitWords, contentOf, draws: drawContents, contents: sight.contents });
     }
     Tutorial.end();
     if (sight.probe) return Probe.draw(parts.sheet, sight.probe, left, { scene, element, text, contentOf });

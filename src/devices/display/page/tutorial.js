@@ -100,7 +100,9 @@ const Tutorial = (() => {
   }
 
   function cardsOf(page, scene, element, text) {
-    const all = element("div", "dishes");
+    const all = element("div", "dishes"), many = page.cards.length;
+    // At most four beside one another, and rows of one length.
+    all.style.setProperty("--columns", Math.ceil(many / Math.ceil(many / 4)));
     for (const { dish, items } of page.cards) {
       const made = element("div", "dish-card"), head = element("figure", "of", Art.dish(scene, dish)), row = element("div", "parts");
       head.append(text("figcaption", "", scene.dishes[dish].label));
@@ -180,12 +182,11 @@ const Tutorial = (() => {
     return presses ? [longest(PRESSED)] : [];
   }
 
-  /** Puts the card into the first of these areas in which its words need not be much smaller, and keeps room for what it can say until the step is done: nothing that can be touched moves then. */
-  function fit(card, isLarge, page, { scene, areas, enough, put, fitWords }) {
+  /** Puts the card into its area, with words as small as it needs, and keeps room for what it can say until the step is done: nothing that can be touched moves then. */
+  function fit(card, isLarge, page, { scene, area, put, fitWords }) {
     const lines = [...card.querySelectorAll(".verdict")], said = lines.map((line) => line.textContent), longest = longestOf(page, scene.words);
     longest.forEach((words, at) => { lines[at].textContent = words; });
-    if (isLarge) fitWords(card);
-    else areas.some((area) => fitWords(put(card, area)) >= enough);
+    fitWords(isLarge ? card : put(card, area));
     longest.forEach((_, at) => {
       lines[at].classList.add("kept");
       lines[at].style.minHeight = `${lines[at].offsetHeight / parseFloat(getComputedStyle(lines[at]).fontSize)}em`;

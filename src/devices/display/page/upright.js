@@ -6,11 +6,11 @@
 const Upright = (wall, fontFamily, ratio) => {
   const WIDE = Upright.wideOf(ratio), BETWEEN = 0.8, EDGE = 0.8;
   // Height of a name above its place; sizes of names and words; least and most height of what is touched; least height for recipes and texts.
-  const NAME = 1.9, WORDS = 1.45, TOUCH = [6.2, 8.4], TEXTS = 15;
-  // Width and height of what the robot has, room below what is touched, height of the title of the robot's side.
-  const SMALL = 4.8, INNER = 0.7, TITLE = 2.2;
-  // Where there is height left: more of it for texts, then room below what the robot has, where its hand stands as large as at a place.
-  const MORE = 5, STAND = 4.8;
+  const NAME = 1.9, WORDS = 1.45, TOUCH = [6.2, 12], TEXTS = 11.4;
+  // Size of what the robot has, as a share of what is touched, where its row is wide enough; room below what is touched, height of the title of the robot's side.
+  const THEIRS = 0.7, INNER = 0.7, TITLE = 2.2;
+  // Width of a place, as a share of its height, of which a button leaves so much less; and its least width.
+  const FLAT = 1.4, BUTTON = 8.6, PLACE = 9.6;
   // Where keys are not shown, the buttons of several orders are told apart by their numbers.
   const served = wall.locations.flatMap(({ kind }, index) => (kind === "order" ? [index] : []));
   const numbered = (knob) => (knob.does === "serve" && served.length > 1 ? { ...knob, label: `${knob.label} ${served.indexOf(knob.at) + 1}` } : knob);
@@ -22,11 +22,11 @@ const Upright = (wall, fontFamily, ratio) => {
   const knobsAt = (index) => scene.buttons.filter((knob) => knob.at === index && ["process", "trash"].includes(knob.does));
   const chunks = (all, size) => Array.from({ length: Math.ceil(all.length / size) }, (_, row) => all.slice(row * size, (row + 1) * size));
   const rows = { places: chunks(places, 2), mine: chunks(shelves("human"), 5), theirs: chunks([...of("robot_hand").map((at) => ({ location: at })), ...shelves("robot").map((at) => ({ storage: at }))], 7) };
-  // What is left of the height goes to what is touched, then to recipes and texts.
+  // What is left of the height goes to what is touched and what the robot has, then to recipes and texts.
   const touched = 2 + rows.places.length + rows.mine.length, named = touched - 1;
-  const fixed = 2 * EDGE + 3 * BETWEEN + named * (NAME + INNER) + 3 * INNER + TITLE + rows.theirs.length * (NAME + SMALL + INNER) + TEXTS;
-  const touch = Math.min(TOUCH[1], Math.max(TOUCH[0], (high - fixed) / touched));
-  const spare = Math.max(0, high - fixed - touched * touch), stand = Math.min(STAND, Math.max(0, spare - MORE)), texts = TEXTS + spare - stand;
+  const fixed = 2 * EDGE + 3 * BETWEEN + named * (NAME + INNER) + 3 * INNER + TITLE + rows.theirs.length * (NAME + INNER) + TEXTS, shares = touched + THEIRS * rows.theirs.length;
+  const touch = Math.min(TOUCH[1], Math.max(TOUCH[0], (high - fixed) / shares)), small = Math.min(THEIRS * touch, (WIDE - 2 * EDGE) / Math.max(...rows.theirs.map((row) => row.length)) - 1.6);
+  const texts = TEXTS + Math.max(0, high - fixed - shares * touch), flat = FLAT * touch;
 
   const areas = { locations: [], storages: [], knobs: new Map(), limits: new Map() };
   const rect = (x, y, w, h) => [x / WIDE, y / high, w / WIDE, h / high];
@@ -46,29 +46,32 @@ const Upright = (wall, fontFamily, ratio) => {
   function putTheirs(top) {
     let y = top + TITLE;
     for (const row of rows.theirs) {
-      // Each as wide as its name; a hand's frame goes around its name, and needs more room.
+      // Each as wide as its name, where there is room; a hand's frame goes around its name, and needs more of it.
       const spots = row.map(({ location, storage }) => (storage === undefined ? scene.locations[location] : scene.storages[storage]));
-      const air = row.map(({ storage }) => (storage === undefined ? 2.6 : 0.9)), wanted = spots.map(({ label }, at) => Math.max(SMALL, measure(label, WORDS)) + air[at]);
-      const scale = (WIDE - 2 * EDGE) / wanted.reduce((sum, width) => sum + width, 0);
+      const air = row.map(({ storage }) => (storage === undefined ? 2.6 : 0.9)), total = (all) => all.reduce((sum, width) => sum + width, 0);
+      const wanted = (share) => spots.map(({ label }, at) => Math.max(small + 0.4, share * measure(label, WORDS) + air[at]));
+      let share = 1;
+      while (share > 0.5 && total(wanted(share)) > WIDE - 2 * EDGE) share -= 0.02;
+      const widths = wanted(share), rest = (WIDE - 2 * EDGE - total(widths)) / row.length;
       let x = EDGE;
       row.forEach(({ location, storage }, at) => {
-        const wide = wanted[at] * scale, area = rect(x + (wide - SMALL) / 2, y + NAME, SMALL, SMALL);
+        const wide = widths[at] + rest, area = rect(x + (wide - small) / 2, y + NAME, small, small);
         areas[storage === undefined ? "locations" : "storages"][storage === undefined ? location : storage] = area;
         areas.limits.set(area, wide - air[at]);
         x += wide;
       });
-      y += NAME + SMALL + INNER;
+      y += NAME + small + INNER;
     }
-    return y + stand;
+    return y;
   }
 
   /** Places in two columns, as on the wall: the buttons of a place stand beside it. */
   function putPlaces(top) {
     let y = top + INNER / 2;
-    const wide = 9.6, column = (WIDE - 2 * EDGE) / 2;
+    const column = (WIDE - 2 * EDGE) / 2;
     for (const row of rows.places) {
       row.forEach((index, at) => {
-        const left = EDGE + at * column, knobs = knobsAt(index), x = left + (knobs.length ? 2.4 : (column - wide) / 2);
+        const left = EDGE + at * column, knobs = knobsAt(index), wide = Math.max(PLACE, Math.min(flat, column - 5 - BUTTON * knobs.length)), x = left + (knobs.length ? 2.4 : (column - wide) / 2);
         areas.locations[index] = rect(x, y + NAME, wide, touch);
         areas.limits.set(areas.locations[index], knobs.length ? wide + 4 : column - 1);
         const free = [x + wide + 1.9, left + column - 0.7 - x - wide - 1.9];
@@ -83,7 +86,7 @@ const Upright = (wall, fontFamily, ratio) => {
   function putMine(top) {
     let y = top + INNER / 2;
     const [hand] = of("human_hand"), knobs = knobsAt(hand);
-    areas.locations[hand] = rect(EDGE + 8, y + NAME, 9.6, touch);
+    areas.locations[hand] = rect(EDGE + 8, y + NAME, PLACE, touch);
     areas.limits.set(areas.locations[hand], 14);
     const from = EDGE + 20, wide = WIDE - EDGE - 0.8 - from;
     spread(knobs.length, from, wide, 1).forEach(([x, width], at) => areas.knobs.set(knobs[at].name, rect(x, y + NAME, width, touch)));
@@ -124,17 +127,16 @@ const Upright = (wall, fontFamily, ratio) => {
     return { area, words: Math.min(1, (area[2] * WIDE - 1.2) / Math.max(...label.split(" ").map((word) => measure(word, 1.6)))) };
   }
 
-  /** Where a text of the tutorial stands: below the orders and over the robot's side, or over the places if it is about that; small if it is about both. */
+  /** Where a text of the tutorial stands: below the orders and over the robot's side, else over the places, or over the person's side where nothing is pressed. */
   function forLesson(recipe, page) {
     const above = [free[0], free[1], free[2], zones.theirs[1] + zones.theirs[3] - free[1]];
-    const { area, hides } = Room.leastHidden([above, zones.places], Room.isAbout(placed, { robot: zones.theirs, human: zones.mine, table: zones.places }, recipe, page));
-    return hides ? [free, area] : [area];
+    return Room.leastHidden([above, zones.places, ...(page.presses ? [] : [zones.mine])], Room.isAbout(placed, { robot: zones.theirs, human: zones.mine, table: zones.places }, recipe, page));
   }
 
   return {
     isUpright: true, placed, em: [1 / WIDE, 1 / high], nameSize, forPill, forLesson,
     widthOf: (said, size) => measure(said, size),
-    sides: () => [zones.theirs, zones.mine], table: () => zones.places, base: () => [zones.theirs[0], zones.theirs[1] + zones.theirs[3] / 2], taken: () => [], enough: 0.72,
+    sides: () => [zones.theirs, zones.mine], table: () => zones.places, base: () => [zones.theirs[0], zones.theirs[1] + zones.theirs[3] / 2], taken: () => [rect(EDGE, top.mine, measure(scene.words.human, WORDS) + 1.6, TITLE)],
     forStatus: () => rect(WIDE - EDGE - 18, top.mine + 0.3, 17, NAME), forRecipe: () => free,
   };
 };

@@ -414,12 +414,17 @@ impl SeekableReplay {
                 }
                 _ => None,
             }),
-            ReplayLandmark::Marker => entries().find_map(|entry| match entry {
-                TimelineEvent::Noted(Event::Marker { note, observer }) => {
-                    Some(event_words::noted_words(note, observer.as_deref()))
-                }
-                _ => None,
-            }),
+            // The whole recording knows the words that the wizard typed later.
+            ReplayLandmark::Marker => {
+                let timeline = &self.replay.session().timeline;
+                let first = timeline.partition_point(|entry| entry.time < now);
+                timeline[first..].iter().take_while(|entry| entry.time == now).find_map(|entry| match &entry.what {
+                    TimelineEvent::Noted(Event::Marker { note, observer }) => {
+                        Some(event_words::noted_words(note, observer.as_deref()))
+                    }
+                    _ => None,
+                })
+            }
             ReplayLandmark::FalseBelief => {
                 let told = self.false_beliefs().filter(|one| one.began == now).map(|one| {
                     let (thinks, truth) = beliefs::contrast(&session.kitchen, one.aspect, one.thinks, one.truth);

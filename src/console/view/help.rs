@@ -73,7 +73,7 @@ fn legend(signs: &Glyphs) -> Vec<Line<'static>> {
         (signs.pause, "trial paused; robot held"),
         ("*", "note that the wizard typed"),
         (signs.cursor, "selected row of a list"),
-        ("!", "keyboard focus or eye tracker was lost"),
+        ("!", "keyboard focus or gaze was lost; a line as long as the loss of gaze"),
     ];
     meanings.map(|(sign, meaning)| Line::Sign(sign, meaning)).to_vec()
 }
@@ -139,7 +139,7 @@ fn help_line(brush: &mut Painter, x: u16, y: u16, columns: u16, line: &Line) {
         }
         Line::Sign(sign, meaning) => {
             let style = brush.style(TextRole::Strong);
-            brush.text(x + 5, y, 1, sign, style);
+            brush.text_right(x + HELP_INDENT - 1, y, HELP_INDENT - 1, sign, style);
             brush.parts(x + HELP_INDENT, y, columns.saturating_sub(HELP_INDENT), &[(meaning, TextRole::Text)]);
         }
         Line::Key(binding, has_effect) => {

@@ -22,12 +22,12 @@ use tomcom_core::communication::concept::{BenefitUnit, ConceptName};
 use tomcom_core::communication::offer::{OfferedCommunication, TAKEN_AFTER};
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption, SignalReason};
 use tomcom_core::communication::{Sender, Signal};
-use tomcom_core::kitchen::LocationId;
+use tomcom_core::kitchen::{Agent, LocationId};
 use tomcom_session::admit::may_send;
 use tomcom_session::external::MindRole;
 use tomcom_session::history::{belief_track, wording};
 use tomcom_session::settings::{Condition, WizardVisibility};
-use tomcom_session::{Session, TrialPhase, offers};
+use tomcom_session::{Session, TimelineEvent, TrialPhase, offers};
 
 /// The offer as it is drawn: the open offer or, in recordings that have no offers, the best signal.
 pub(super) struct ShownOffer<'a> {
@@ -146,13 +146,28 @@ impl ShownOffer<'_> {
             None => p,
         });
         said.extend(match (&reason.prevents, &reason.instead) {
-            (Some(button), _) => Some(format!("next error: {}", wording::location(button))),
+            (Some(button), _) => Some(match self.opened.and_then(|opened| pressed_since(session, button, opened)) {
+                Some(at) => format!("{} was pressed at {at}", wording::location(button)),
+                None => format!("next error: {}", wording::location(button)),
+            }),
             (None, Some(button)) => Some(format!("waits instead of: {}", wording::location(button))),
             (None, None) => None,
         });
         said.extend(self.opened.map(|opened| format!("as of {}", session.trial_clock_at(opened))));
         said
     }
+}
+
+/// When the human has pressed a button since this time, on the trial's clock.
+fn pressed_since(session: &Session, button: &str, since: SessionTime) -> Option<SessionTime> {
+    let later = session.timeline.iter().rev().take_while(|entry| entry.time > since);
+    let pressed = later.filter(|entry| match entry.what {
+        TimelineEvent::Press { agent: Agent::Human, button: id, .. } => {
+            session.kitchen.button(Agent::Human, id).name == button
+        }
+        _ => false,
+    });
+    pressed.last().map(|entry| session.trial_clock_at(entry.time))
 }
 
 /// Probability of a wrong value below which an offer is worth its cost only since the belief would be costly.

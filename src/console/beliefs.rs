@@ -5,7 +5,7 @@ use super::key_action::KeyLayer;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::recommendation::aspects_told;
-use tomcom_core::kitchen::{AspectId, AspectKind, ContentId, Kitchen, LocationId, LocationKind};
+use tomcom_core::kitchen::{AspectId, AspectKind, LocationId};
 use tomcom_session::history::belief_track;
 use tomcom_session::settings::WizardVisibility;
 use tomcom_session::{Session, TrialPhase};
@@ -139,35 +139,6 @@ pub fn name(session: &Session, aspect: AspectId) -> String {
         (AspectKind::Recipe(_), Some(order)) => format!("recipe of {}", kitchen.location(order).label()),
         (AspectKind::Recipe(dish), None) => format!("recipe of {}", kitchen.dish(dish).name),
         (AspectKind::Location(location), _) => kitchen.location(location).label(),
-    }
-}
-
-/// What the participant believes and what is true, as far as they differ: of a recipe the items that differ, ingredient
-/// against ingredient ("cut salmon", "needs cut tuna"); of a place its content ("empty", "is nori").
-pub fn contrast(kitchen: &Kitchen, aspect: AspectId, thinks: usize, truth: usize) -> (String, String) {
-    let about = &kitchen.aspects[aspect.index()];
-    let items = |index: usize| &kitchen.content(ContentId(about.values[index])).items;
-    let only = |of: usize, other: usize| {
-        let items = items(of).iter().filter(|item| !items(other).contains(item));
-        items.map(|&item| kitchen.content(item).wording.as_str()).collect::<Vec<_>>().join(" + ")
-    };
-    match about.kind {
-        AspectKind::Recipe(_) if thinks != truth => (only(thinks, truth), format!("needs {}", only(truth, thinks))),
-        _ => (value(kitchen, aspect, thinks).to_string(), format!("is {}", value(kitchen, aspect, truth))),
-    }
-}
-
-/// A value of an aspect in words; an order without a dish is "no order".
-pub fn value(kitchen: &Kitchen, aspect: AspectId, value: usize) -> &str {
-    let about = &kitchen.aspects[aspect.index()];
-    match about.kind {
-        AspectKind::Location(order) if kitchen.location(order).kind == LocationKind::Order => {
-            match about.labels[value].as_str() {
-                "none" => "no order",
-                _ => &about.wordings[value],
-            }
-        }
-        _ => &about.wordings[value],
     }
 }
 

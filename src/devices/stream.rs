@@ -50,7 +50,7 @@ pub struct RerunStream {
 }
 
 impl RerunStream {
-    /// Opens a Rerun stream that begins with these rows; `has_arm`: the session records the poses of the robot's arm. If the port is in use, the server takes one of the next ports.
+    /// Opens a Rerun stream that begins with these rows. If the port is in use, the server takes one of the next ports.
     ///
     /// # Errors
     /// The file cannot be created, or the program cannot listen at the address.
@@ -59,11 +59,10 @@ impl RerunStream {
         file: Option<&Path>,
         server: Option<SocketAddr>,
         (fixed, opening): (Vec<EntityUpdate>, SceneUpdate),
-        has_arm: bool,
+        lane: ShownRecording,
     ) -> io::Result<RerunStream> {
         let server = server.map(free_port).transpose()?;
         let outlets = StreamOutlets { file: file.map(Path::to_path_buf), server };
-        let lane = ShownRecording { title: identity.name.clone(), has_arm, ..ShownRecording::default() };
         let mut writer = RerunWriter::open(identity, &outlets, std::slice::from_ref(&lane))?;
         let (news, told) = sync_channel::<Vec<SceneUpdate>>(WAITING);
         let (close, closed) = channel();
@@ -176,7 +175,9 @@ mod tests {
             let time = SessionTime(step * 1_000_000);
             SceneUpdate { time, trial: time, step, rows }
         };
-        let stream = RerunStream::open(&identity, Some(&path), Some(taken), (Vec::new(), moment(0)), false).unwrap();
+        let stream =
+            RerunStream::open(&identity, Some(&path), Some(taken), (Vec::new(), moment(0)), ShownRecording::default())
+                .unwrap();
         let server = stream.server.unwrap();
         assert!(server.port() != taken.port() && server.ip() == taken.ip());
         (1..1000).for_each(|step| stream.tell(vec![moment(step)]));
@@ -199,7 +200,9 @@ mod tests {
             step,
             rows: vec![EntityUpdate::new("a", EntityData::Value(step as f64))],
         };
-        let mut stream = RerunStream::open(&identity, Some(&path), None, (Vec::new(), moment(0)), false).unwrap();
+        let mut stream =
+            RerunStream::open(&identity, Some(&path), None, (Vec::new(), moment(0)), ShownRecording::default())
+                .unwrap();
         (1..100).for_each(|step| stream.tell(vec![moment(step)]));
         assert!(path.exists() && stream.give_up_file() && !path.exists());
         assert!(!stream.give_up_file(), "there is none any more");

@@ -316,8 +316,9 @@ fn playing(recordings: &[PathBuf], with_films: bool) -> FileResult<Vec<Playing>>
             (_, false) => root,
         };
         let title = title(playing.replay.session(), &names[nth]);
-        let (films, has_arm) = (playing.films.len(), has_poses(playing.replay.session()));
-        Ok(Playing { lane: ShownRecording { root, title, films, has_arm }, ..playing })
+        let (films, session) = (playing.films.len(), playing.replay.session());
+        let (has_arm, has_advice) = (has_poses(session), session.spec.asks_assistant());
+        Ok(Playing { lane: ShownRecording { root, title, films, has_arm, has_advice }, ..playing })
     };
     recordings.iter().enumerate().map(one).collect()
 }
@@ -430,9 +431,11 @@ pub fn landmarks(recording: &Path, kinds: &[ReplayLandmark]) -> FileResult<Vec<R
         }
     }
     if kinds.contains(&ReplayLandmark::FalseBelief) {
+        let numbered: Vec<_> = follower.false_beliefs.lasting(session).collect();
         for held in follower.false_beliefs.all() {
-            let ([thinks, truth], about) = (held.contents(kitchen), &held.about);
-            add(held.began, held.ended, format!("false belief: {about} taken for {thinks}, truly {truth}"));
+            let number = numbered.iter().position(|one| *one == held).map(|nth| format!(" {}", nth + 1));
+            let (number, told) = (number.unwrap_or_default(), held.told(kitchen));
+            add(held.began, held.ended, format!("false belief{number}: {}: {told}", held.about));
         }
     }
     found.sort_by_key(|one| one.from);

@@ -7,7 +7,6 @@
 
 use std::path::Path;
 
-use crate::console::beliefs;
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::follower::SessionFollower;
@@ -27,9 +26,6 @@ use tomcom_study::standing::exclusion_status;
 const CHUNK: usize = 4096;
 /// Largest number of snapshots of the session; when there are more, every second one is dropped.
 const MOST_SNAPSHOTS: usize = 256;
-
-/// A replay stops at false beliefs that last at least this long: half of all are looks that nobody has taken yet.
-const LEAST_FALSE_S: f64 = 1.0;
 
 /// Event without effect that replaces hidden events in a replay for raters, so that sequence numbers stay.
 const HIDDEN: Event = Event::ClockJumped { by_ms: 0 };
@@ -356,7 +352,7 @@ impl SeekableReplay {
     /// The false beliefs of the estimate at which a replay stops: those that last, as far as the recording was read.
     fn false_beliefs(&self) -> impl Iterator<Item = &EstimatedFalseBelief> {
         let SessionFollower { false_beliefs, session, .. } = &self.replay.follower;
-        false_beliefs.all().filter(move |one| one.lasted_s(session) >= LEAST_FALSE_S)
+        false_beliefs.lasting(session)
     }
 
     /// Times of the landmarks of this kind, as far as the recording was read.
@@ -427,9 +423,8 @@ impl SeekableReplay {
             }
             ReplayLandmark::FalseBelief => {
                 let told = self.false_beliefs().filter(|one| one.began == now).map(|one| {
-                    let (thinks, truth) = beliefs::contrast(&session.kitchen, one.aspect, one.thinks, one.truth);
                     let lasted_s = one.lasted_s(self.replay.session());
-                    format!("{}: thinks {thinks}, {truth}; for {lasted_s:.1} s", one.about)
+                    format!("{}: {}; for {lasted_s:.1} s", one.about, one.told(&session.kitchen))
                 });
                 Some(told.collect::<Vec<_>>().join("; "))
             }

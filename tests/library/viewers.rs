@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use tomcom_devices::rerun::StreamIdentity;
+use tomcom_devices::rerun::{ShownRecording, StreamIdentity};
 use tomcom_devices::scene::{EntityData, EntityUpdate, SceneUpdate};
 use tomcom_devices::stream::RerunStream;
 
@@ -29,7 +29,8 @@ pub fn stream(name: &str) -> RerunStream {
     let free = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).and_then(|one| one.local_addr()).expect("a port");
     let identity = StreamIdentity { id: format!("viewers-{name}"), name: name.to_string(), facts: Vec::new() };
     let fixed = vec![EntityUpdate::new("fixed/for/ever", EntityData::Value(1.0))];
-    RerunStream::open(&identity, None, Some(free), (fixed, moment(0, &["opening/entity"])), false).expect("a stream")
+    RerunStream::open(&identity, None, Some(free), (fixed, moment(0, &["opening/entity"])), ShownRecording::default())
+        .expect("a stream")
 }
 
 /// Asks for a method of the service; `body` is one message of Protocol Buffers.

@@ -8,9 +8,7 @@ use super::paint::Painter;
 use super::regions::PanelAreas;
 use super::theme::TextRole;
 use super::timeline::ticks;
-use crate::console::beliefs::{
-    BeliefCorrectness, EstimatedBelief, are_by_cost, contrast, name, percent, value, visibility,
-};
+use crate::console::beliefs::{BeliefCorrectness, EstimatedBelief, are_by_cost, name, percent, visibility};
 use crate::console::console_model::ConsoleModel;
 use crate::console::mouse::ClickAction;
 use crate::console::panels::Panel as PanelName;
@@ -21,6 +19,7 @@ use tomcom_core::kitchen::AspectId;
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_session::Session;
 use tomcom_session::history::belief_track::{self, BeliefSnapshot, SHOWN_S};
+use tomcom_session::history::wording;
 use tomcom_session::settings::WizardVisibility;
 
 /// Least width, in columns, of a panel that shows each belief in one line.
@@ -186,7 +185,7 @@ impl Panel<'_> {
 
     /// What the participant thinks, and what is true: "cut salmon", "needs cut tuna".
     fn values(&self, belief: &EstimatedBelief) -> (String, String) {
-        contrast(&self.session.kitchen, belief.aspect, belief.thinks, belief.truth)
+        wording::contrast(&self.session.kitchen, belief.aspect, belief.thinks, belief.truth)
     }
 
     /// Probability of what the participant thinks or may think, as the line says, and the time for which the truth has
@@ -302,7 +301,7 @@ impl Panel<'_> {
         let style = brush.style(role(belief));
         let quiet = brush.style(TextRole::Quiet);
         let name = name(self.session, belief.aspect);
-        let right = value(&self.session.kitchen, belief.aspect, belief.truth);
+        let right = wording::value(&self.session.kitchen, belief.aspect, belief.truth);
         let thought = match belief.standing {
             BeliefCorrectness::Right => format!("{name}: {right}"),
             BeliefCorrectness::Unsure => format!("{name}: may think {thinks} {}, {truth}", percent(belief.p.into())),

@@ -126,7 +126,7 @@ impl ShownOffer<'_> {
             Some((aspect, value(&reason.believes)?, value(&reason.truth)?))
         });
         let (believes, truth) = match values {
-            Some((aspect, believes, truth)) => beliefs::contrast(kitchen, aspect, believes, truth),
+            Some((aspect, believes, truth)) => wording::contrast(kitchen, aspect, believes, truth),
             None => {
                 let worded = wording::reason(kitchen, reason);
                 (worded.believes, format!("is {}", worded.truth))
@@ -281,7 +281,7 @@ pub(super) fn thinks(session: &Session, believed: &[EstimatedBelief], place: Loc
     let wrong = believed.iter().find(|belief| {
         belief.standing == BeliefCorrectness::False && beliefs::place(session, belief.aspect) == Some(place)
     })?;
-    Some(beliefs::contrast(&session.kitchen, wrong.aspect, wrong.thinks, wrong.truth))
+    Some(wording::contrast(&session.kitchen, wrong.aspect, wrong.thinks, wrong.truth))
 }
 
 /// Width of a benefit bar in columns; a column stands for half a saved press, or for the concept ToM a twelfth of the

@@ -51,6 +51,8 @@ pub struct ShownRecording {
     pub films: usize,
     /// Whether the poses of the robot's arm are known.
     pub has_arm: bool,
+    /// Whether an assistant is asked, so that there are net benefits of signals.
+    pub has_advice: bool,
 }
 
 /// A property of a view: its path in the blueprint, and its components.
@@ -119,9 +121,9 @@ impl ViewerLayout {
 }
 
 fn alone(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
-    let (beliefs, benefit) = (beliefs(lane, properties), benefit(lane, properties));
-    let probes = lanes(lane, "Probes: answers and estimate", &["human/probes/**"], properties);
-    let mut views = vec![beliefs, benefit, probes];
+    let mut views = vec![beliefs(lane, properties)];
+    views.extend(benefit(lane, properties));
+    views.push(lanes(lane, "Probes: answers and estimate", &["human/probes/**"], properties));
     if lane.has_arm {
         views.insert(0, arm(lane, properties));
         views.push(series(lane, "Joint angles (degrees)", &["robot/joints/**"], properties));
@@ -136,24 +138,18 @@ fn alone(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike
     Horizontal::new([left.into(), side.into()]).with_column_shares([5.0, 3.0]).into()
 }
 
-/// Viewer layout for one of several recordings side by side.
+/// Viewer layout for one of several recordings side by side: what is in words has the whole width of its part.
 fn beside(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
-    let curves =
-        [overview(lane, properties), looks(lane, properties), beliefs(lane, properties), benefit(lane, properties)];
-    let curves = Tabs::new(curves);
+    let mut curves = vec![overview(lane, properties), looks(lane, properties), beliefs(lane, properties)];
+    curves.extend(benefit(lane, properties));
     let told = Tabs::new([now(lane), page(lane, "Signals", "signals/page"), about(lane)]);
-    let words = Horizontal::new([told.into(), happened(lane, properties)]);
-    Vertical::new([seen(lane, properties), curves.into(), words.into()]).with_row_shares([5.0, 3.0, 4.0]).into()
+    let parts = [seen(lane, properties), Tabs::new(curves).into(), told.into(), happened(lane, properties)];
+    Vertical::new(parts).with_row_shares([5.0, 3.0, 3.0, 3.0]).into()
 }
 
 fn path(lane: &ShownRecording, entities: &str) -> String {
     let path = format!("{}/{entities}", lane.root);
     format!("/{}", path.trim_matches('/'))
-}
-
-/// The name of a view, with whose it is where several recordings stand side by side.
-fn titled(lane: &ShownRecording, name: &str) -> String {
-    if lane.root.is_empty() { name.to_string() } else { format!("{}: {name}", lane.title) }
 }
 
 /// A view of the Rerun viewer with one property set.
@@ -183,7 +179,7 @@ fn seen(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike 
     }
     let films = (0..lane.films).map(|film| {
         let (name, entity) = (format!("Film {}", film + 1), film_entity(lane, film));
-        Spatial2DView::new(titled(lane, &name)).with_origin(entity.clone()).with_contents([entity]).into()
+        Spatial2DView::new(name).with_origin(entity.clone()).with_contents([entity]).into()
     });
     let films = Vertical::new(films.collect::<Vec<ContainerLike>>());
     Horizontal::new([kitchen, films.into()]).with_column_shares([3.0, 2.0]).into()
@@ -220,7 +216,7 @@ fn cursor(from_ns: i64, to_ns: i64) -> TimeRange {
 
 fn arm(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
     let contents = ["robot/**", "human/hand/**"].map(|entities| path(lane, entities));
-    let view = Spatial3DView::new(titled(lane, "Arm")).with_origin(path(lane, "robot")).with_contents(contents);
+    let view = Spatial3DView::new("Arm").with_origin(path(lane, "robot")).with_contents(contents);
     let eye = EyeControls3D::new().with_position(EYE_M).with_look_target(LOOKED_AT_M).with_eye_up([0.0, 0.0, 1.0]);
     with(view, "EyeControls3D", &eye, properties)
 }
@@ -228,7 +224,7 @@ fn arm(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
 /// A view of curves about the time cursor.
 fn series(lane: &ShownRecording, name: &str, entities: &[&str], properties: &mut Vec<Property>) -> ContainerLike {
     let contents: Vec<String> = entities.iter().map(|entities| path(lane, entities)).collect();
-    let view = TimeSeriesView::new(titled(lane, name)).with_origin(path(lane, "")).with_contents(contents);
+    let view = TimeSeriesView::new(name).with_origin(path(lane, "")).with_contents(contents);
     let view = with(view, "PlotLegend", &PlotLegend::new().with_corner(Corner2D::LeftTop), properties);
     // What is not in this time is not in the legend either.
     let shown = |timeline: &str| VisibleTimeRange { timeline: timeline.into(), range: around() };
@@ -245,13 +241,14 @@ fn beliefs(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLi
     with(view, "ScalarAxis", &ScalarAxis::new().with_range(PROBABILITY), properties)
 }
 
-fn benefit(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
-    series(lane, "Net benefit of signals (presses)", &["assistant/benefit/**"], properties)
+fn benefit(lane: &ShownRecording, properties: &mut Vec<Property>) -> Option<ContainerLike> {
+    let name = "Net benefit of signals (presses)";
+    lane.has_advice.then(|| series(lane, name, &["assistant/benefit/**"], properties))
 }
 
 /// A view of states over time, as lanes with words; of all the time, also while data come.
 fn lanes(lane: &ShownRecording, name: &str, entities: &[&str], properties: &mut Vec<Property>) -> ContainerLike {
-    let view = StateTimelineView::new(titled(lane, name)).with_origin(path(lane, ""));
+    let view = StateTimelineView::new(name).with_origin(path(lane, ""));
     let view = view.with_contents(entities.iter().map(|entities| path(lane, entities)));
     with(view, "TimeAxis", &TimeAxis::new().with_link(LinkAxis::LinkToGlobal), properties)
 }
@@ -262,14 +259,14 @@ fn overview(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerL
 
 /// The places that are looked at, about the time cursor: over a whole trial there are too many.
 fn looks(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
-    let view = StateTimelineView::new(titled(lane, "Looks")).with_origin(path(lane, ""));
+    let view = StateTimelineView::new("Looks").with_origin(path(lane, ""));
     let view = view.with_contents([path(lane, "look")]);
     with(view, "TimeAxis", &TimeAxis::new().with_view_range(around()), properties)
 }
 
 fn page(lane: &ShownRecording, name: &str, entity: &str) -> ContainerLike {
     let page = path(lane, entity);
-    TextDocumentView::new(titled(lane, name)).with_origin(page.clone()).with_contents([page]).into()
+    TextDocumentView::new(name).with_origin(page.clone()).with_contents([page]).into()
 }
 
 fn now(lane: &ShownRecording) -> ContainerLike {
@@ -283,7 +280,7 @@ fn about(lane: &ShownRecording) -> ContainerLike {
 /// A view of the list of events, each with its time on the trial's clock.
 fn happened(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
     let lines = path(lane, "happened");
-    let view = TextLogView::new(titled(lane, "What happened")).with_origin(path(lane, "")).with_contents([lines]);
+    let view = TextLogView::new("What happened").with_origin(path(lane, "")).with_contents([lines]);
     let column = |kind, visible: bool| TextLogColumn { kind, visible: visible.into() };
     let columns = TextLogColumns::new()
         .with_timeline_columns([TimelineColumn { timeline: TRIAL_TIME.into(), visible: true.into() }])

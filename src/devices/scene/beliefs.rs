@@ -32,9 +32,10 @@ pub const WRONG_BELIEFS: &str = "wrong_belief/";
 
 /// A belief about one state aspect.
 #[derive(Clone, Copy)]
-struct Held<'a> {
+struct Held {
     aspect: usize,
-    believes: &'a str,
+    /// Index of the value that is most probably believed.
+    thinks: usize,
     p_truth: f64,
 }
 
@@ -56,7 +57,7 @@ pub struct BeliefScene {
     /// The curves of the plot: of what is believed wrong for a while, until it is known.
     curves: [Option<BeliefCurve>; entity_content::CURVES.len()],
     /// For each state aspect, since which press the simulated participant believes what it believes wrong.
-    own_since: Vec<Option<(String, SessionTime)>>,
+    own_since: Vec<Option<(usize, SessionTime)>>,
     /// What the simulated participant believes wrong before its next press, in words.
     own: String,
     /// State of the kitchen before the last press of the human.
@@ -186,12 +187,8 @@ impl BeliefScene {
         follower: &SessionFollower,
     ) -> Vec<EntityUpdate> {
         let kitchen = &session.kitchen;
-        let held: Vec<Held> = witness
-            .aspects
-            .iter()
-            .enumerate()
-            .map(|(aspect, told)| Held { aspect, believes: kitchen.worded(&told.believes), p_truth: told.p_truth })
-            .collect();
+        let told = witness.aspects.iter().map(|told| (told.believes.as_str(), told.p_truth));
+        let held = recorded(kitchen, session.state, told);
         if let Some(before) = self.before.take_if(|_| self.is_error) {
             let since = |aspect| {
                 let began = follower.false_beliefs.before(aspect, session.time)?.began;
@@ -213,8 +210,8 @@ impl BeliefScene {
         self.tick = Some(session.time.0 / EVERY_NS);
         let kitchen = &session.kitchen;
         let of_aspect = |aspect: usize| {
-            let believes = kitchen.aspects[aspect].wordings[belief.aspects[aspect].most_likely()].as_str();
-            Held { aspect, believes, p_truth: belief.p_truth(kitchen, session.state, AspectId(aspect as u8)) }
+            let thinks = belief.aspects[aspect].most_likely();
+            Held { aspect, thinks, p_truth: belief.p_truth(kitchen, session.state, AspectId(aspect as u8)) }
         };
         let held: Vec<Held> = (0..kitchen.aspects.len()).map(of_aspect).collect();
         self.estimated(session, &held, follower)
@@ -232,10 +229,7 @@ impl BeliefScene {
                 continue;
             }
             *drawn = held.map(|held| held.began);
-            let words = held.map_or_else(String::new, |held| {
-                let [thinks, truth] = held.contents(kitchen);
-                format!("{thinks}, truly {truth}")
-            });
+            let words = held.map_or_else(String::new, |held| held.told(kitchen));
             let data = EntityData::State(words, entity_content::FALSE);
             rows.push(EntityUpdate::new(wrong(&kitchen.aspects[index].name), data));
         }
@@ -306,15 +300,13 @@ impl BeliefScene {
     /// Entity updates from the recorded belief of a simulated participant before its press.
     fn truly(&mut self, session: &Session, witness: &RecordedBelief) -> Vec<EntityUpdate> {
         let kitchen = &session.kitchen;
-        let aspects = witness.aspects.iter().enumerate();
-        let held: Vec<Held> = aspects
-            .map(|(aspect, told)| Held { aspect, believes: kitchen.worded(&told.believes), p_truth: told.p_truth })
-            .collect();
+        let told = witness.aspects.iter().map(|told| (told.believes.as_str(), told.p_truth));
+        let held = recorded(kitchen, session.state, told);
         let now = session.time;
         self.own_since.resize(held.len(), None);
         for (one, since) in held.iter().zip(&mut self.own_since) {
-            let began = since.take().filter(|(believes, _)| believes == one.believes).map_or(now, |(_, began)| began);
-            *since = (one.p_truth < FALSE_BELOW).then(|| (one.believes.to_string(), began));
+            let began = since.take().filter(|(thinks, _)| *thinks == one.thinks).map_or(now, |(_, began)| began);
+            *since = (one.p_truth < FALSE_BELOW).then_some((one.thinks, began));
         }
         let since = |aspect: AspectId| {
             let began = self.own_since[aspect.index()].as_ref()?.1;
@@ -351,10 +343,10 @@ fn believed(kitchen: &Kitchen, state: State, held: &[Held], since: impl Fn(Aspec
     let mut wrong: Vec<&Held> = held.iter().filter(|one| one.p_truth < FALSE_BELOW).collect();
     wrong.sort_by(|a, b| a.p_truth.total_cmp(&b.p_truth));
     let line = |one: &&Held| {
-        let (believes, truly) = (taken_for_what(kitchen, state, one), truth(kitchen, state, one.aspect));
+        let (thinks, truth) = thinks(kitchen, state, one);
         let since = since(AspectId(one.aspect as u8)).map_or_else(String::new, |since| format!("; since {since}"));
         format!(
-            "- **{}**: **{believes}**, truly {truly}; P(truth) {}{since}\n",
+            "- **{}**: thinks **{thinks}**, {truth}; P(truth) {}{since}\n",
             named(kitchen, state, one),
             percent(one)
         )
@@ -381,11 +373,19 @@ fn in_both_clocks(time: SessionTime) -> String {
     format!("{} (+{}.{:03}s)", moment_on_clock(time), ms / 1000, ms % 1000)
 }
 
-/// The falsely believed value of a state aspect.
-fn taken_for_what<'a>(kitchen: &Kitchen, state: State, held: &Held<'a>) -> &'a str {
-    if held.believes == truth(kitchen, state, held.aspect) { "unsure" } else { held.believes }
+/// What is believed about a state aspect and what is true, in words.
+fn thinks(kitchen: &Kitchen, state: State, held: &Held) -> (String, String) {
+    let aspect = AspectId(held.aspect as u8);
+    let truth = kitchen.true_value(state, aspect);
+    let (thinks, told) = wording::contrast(kitchen, aspect, held.thinks, truth);
+    (if held.thinks == truth { "unsure".to_string() } else { thinks }, told)
 }
 
-fn truth(kitchen: &Kitchen, state: State, aspect: usize) -> &str {
-    &kitchen.aspects[aspect].wordings[kitchen.true_value(state, AspectId(aspect as u8))]
+/// Beliefs that an event tells, by the names of their values.
+fn recorded<'a>(kitchen: &Kitchen, state: State, told: impl Iterator<Item = (&'a str, f64)>) -> Vec<Held> {
+    let held = |(aspect, (believes, p_truth)): (usize, (&str, f64))| {
+        let known = kitchen.aspects[aspect].labels.iter().position(|label| label == believes);
+        Held { aspect, thinks: known.unwrap_or_else(|| kitchen.true_value(state, AspectId(aspect as u8))), p_truth }
+    };
+    told.enumerate().map(held).collect()
 }

@@ -4,7 +4,7 @@
 use std::net::SocketAddr;
 
 use crate::console::console_model::RerunStreamStatus;
-use tomcom_devices::rerun::{StreamIdentity, uri};
+use tomcom_devices::rerun::{ShownRecording, StreamIdentity, uri};
 use tomcom_devices::rrd::{self, RRD_NAME};
 use tomcom_devices::scene::{SceneInputs, SessionScene, facts, has_poses, title};
 use tomcom_devices::stream::RerunStream;
@@ -50,7 +50,9 @@ impl StreamedSession {
         let identity = StreamIdentity { id: format!("{name} {began} {whole}"), name: title(session, &name), facts };
         let address = spec.live.then(|| spec.address.parse::<SocketAddr>()).transpose();
         let server = address.map_err(|error| format!("{}: {error}", spec.address))?;
-        let stream = RerunStream::open(&identity, file.as_deref(), server, (fixed, opening), has_poses(session));
+        let (has_arm, has_advice) = (has_poses(session), session.spec.asks_assistant());
+        let lane = ShownRecording { title: identity.name.clone(), has_arm, has_advice, ..ShownRecording::default() };
+        let stream = RerunStream::open(&identity, file.as_deref(), server, (fixed, opening), lane);
         let stream = stream.map_err(|error| error.to_string())?;
         if let Some(server) = stream.server {
             log.announce(&uri(server));

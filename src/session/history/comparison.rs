@@ -258,11 +258,11 @@ fn believed(kitchen: &Kitchen, known: &CommunicationContext) -> [String; 2] {
     let (wrong, unsure): (Vec<_>, Vec<_>) =
         doubtful.into_iter().partition(|(_, held)| f64::from(held.p_truth) < FALSE_BELOW);
     let told = |&(index, held): &(usize, &AspectBeliefSnapshot)| {
-        let aspect = &kitchen.aspects[index];
-        let truth = kitchen.true_value(known.state, AspectId(index as u8));
-        let name = wording::aspect(kitchen, known.state, AspectId(index as u8));
-        let (wrong, truth) = (&aspect.wordings[usize::from(held.wrong)], &aspect.wordings[truth]);
-        format!("{name}: thinks {wrong} (probability {:.2}), is {truth} ({:.2})", held.p_wrong, held.p_truth)
+        let aspect = AspectId(index as u8);
+        let name = wording::aspect(kitchen, known.state, aspect);
+        let truth = kitchen.true_value(known.state, aspect);
+        let (wrong, truth) = wording::contrast(kitchen, aspect, usize::from(held.wrong), truth);
+        format!("{name}: thinks {wrong} (probability {:.2}), {truth} ({:.2})", held.p_wrong, held.p_truth)
     };
     let doubted = |&(index, held): &(usize, &AspectBeliefSnapshot)| {
         format!("{} {:.2}", wording::aspect(kitchen, known.state, AspectId(index as u8)), held.p_truth)

@@ -11,6 +11,9 @@ use tomcom_core::mind::dirichlet::DirichletBelief;
 /// other events count at once.
 const EVERY_NS: u64 = 200_000_000;
 
+/// A false belief lasts if it is held at least so long.
+const LEAST_S: f64 = 1.0;
+
 /// One false belief about one state aspect, by the estimate. Another truth, or another wrong value that is believed most, is
 /// another false belief.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -34,9 +37,10 @@ impl EstimatedFalseBelief {
         session.age(self.began, self.ended.unwrap_or(session.time)).as_secs_f64()
     }
 
-    /// What is believed and what is true, in words.
-    pub fn contents<'a>(&self, kitchen: &'a Kitchen) -> [&'a str; 2] {
-        [self.thinks, self.truth].map(|value| kitchen.aspects[self.aspect.index()].wordings[value].as_str())
+    /// What is believed and what is true, in words: "thinks empty, is nori".
+    pub fn told(&self, kitchen: &Kitchen) -> String {
+        let (thinks, truth) = wording::contrast(kitchen, self.aspect, self.thinks, self.truth);
+        format!("thinks {thinks}, {truth}")
     }
 }
 
@@ -88,6 +92,11 @@ impl EstimatedFalseBeliefs {
     /// All but those that were over when other events of the same time had been applied.
     pub fn all(&self) -> impl DoubleEndedIterator<Item = &EstimatedFalseBelief> {
         self.all.iter().filter(|one| one.ended != Some(one.began))
+    }
+
+    /// Those that last, by which they are numbered from 1: half of all are looks that nobody has taken yet.
+    pub fn lasting(&self, session: &Session) -> impl Iterator<Item = &EstimatedFalseBelief> {
+        self.all().filter(|one| one.lasted_s(session) >= LEAST_S)
     }
 
     /// The last false belief about an aspect of which `begun` holds, unless `over` holds of its end.

@@ -10,7 +10,8 @@ use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::gaze::quality::DroppedInputCounts;
 use tomcom_core::kitchen::rules::NoEffectReason;
 use tomcom_core::kitchen::{
-    Agent, AspectId, AspectKind, ButtonAction, ButtonId, Dish, Kitchen, LocationId, OrderContent, State,
+    Agent, AspectId, AspectKind, ButtonAction, ButtonId, ContentId, Dish, Kitchen, LocationId, LocationKind,
+    OrderContent, State,
 };
 use tomcom_core::measures::raters::{ErrorCauseCode, ErrorCauseKind};
 use tomcom_core::robot::AbortReason;
@@ -56,6 +57,35 @@ pub fn aspect(kitchen: &Kitchen, state: State, aspect: AspectId) -> String {
     let order = wanted.find(|&(_, dish)| about.kind == AspectKind::Recipe(dish)).map(|(order, _)| order);
     let order = order.map_or(String::new(), |order| format!(" ({})", kitchen.location(order).label()));
     format!("{}{order}", location(&about.name))
+}
+
+/// What the participant believes and what is true, as far as they differ: of a recipe the items that differ, ingredient
+/// against ingredient ("cut salmon", "needs cut tuna"); of a place its content ("empty", "is nori").
+pub fn contrast(kitchen: &Kitchen, aspect: AspectId, thinks: usize, truth: usize) -> (String, String) {
+    let about = &kitchen.aspects[aspect.index()];
+    let items = |index: usize| &kitchen.content(ContentId(about.values[index])).items;
+    let only = |of: usize, other: usize| {
+        let items = items(of).iter().filter(|item| !items(other).contains(item));
+        items.map(|&item| kitchen.content(item).wording.as_str()).collect::<Vec<_>>().join(" + ")
+    };
+    match about.kind {
+        AspectKind::Recipe(_) if thinks != truth => (only(thinks, truth), format!("needs {}", only(truth, thinks))),
+        _ => (value(kitchen, aspect, thinks).to_string(), format!("is {}", value(kitchen, aspect, truth))),
+    }
+}
+
+/// A value of an aspect in words; an order without a dish is "no order".
+pub fn value(kitchen: &Kitchen, aspect: AspectId, value: usize) -> &str {
+    let about = &kitchen.aspects[aspect.index()];
+    match about.kind {
+        AspectKind::Location(order) if kitchen.location(order).kind == LocationKind::Order => {
+            match about.labels[value].as_str() {
+                "none" => "no order",
+                _ => &about.wordings[value],
+            }
+        }
+        _ => &about.wordings[value],
+    }
 }
 
 /// "slip", "wrong about cooking pot".

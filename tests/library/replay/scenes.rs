@@ -173,7 +173,7 @@ fn a_bar_of_a_wrong_belief_says_what_is_true() {
             continue;
         }
         let EntityData::State(text, _) = &row.shown else { panic!("{row:?}") };
-        assert!(text.is_empty() || text.contains(", truly "), "{text}");
+        assert!(text.is_empty() || text.starts_with("thinks "), "{text}");
         count += 1;
     }
     assert!(count > 2, "{count} wrong beliefs");
@@ -335,15 +335,13 @@ fn false_beliefs_are_the_same_in_replay_review_and_annotations() {
     let name = |aspect: &str| wording::location(aspect);
     let mut held: Vec<(SessionTime, String, String)> = Vec::new();
     for one in replay.follower.false_beliefs.all() {
-        let [thinks, truth] = one.contents(&kitchen);
-        assert!(thinks != truth && one.ended.is_none_or(|ended| ended > one.began), "{one:?}");
-        held.push((one.began, name(&kitchen.aspects[one.aspect.index()].name), format!("{thinks}, truly {truth}")));
+        assert!(one.thinks != one.truth && one.ended.is_none_or(|ended| ended > one.began), "{one:?}");
+        held.push((one.began, name(&kitchen.aspects[one.aspect.index()].name), one.told(&kitchen)));
     }
     assert!(held.len() > 5, "{} false beliefs", held.len());
     // The replay stops at those that last.
     let film = SeekableReplay::open(recording).expect("it opens");
-    let all = replay.follower.false_beliefs.all();
-    let lasting = all.filter(|one| one.lasted_s(replay.session()) >= 1.0);
+    let lasting = replay.follower.false_beliefs.lasting(replay.session());
     let began: Vec<SessionTime> = lasting.map(|one| one.began).collect();
     assert!(!began.is_empty() && began.len() < held.len(), "{} of {}", began.len(), held.len());
     assert_eq!(film.landmarks(ReplayLandmark::FalseBelief), began);
@@ -372,8 +370,7 @@ fn false_beliefs_are_the_same_in_replay_review_and_annotations() {
     for tier in &annotations.tiers {
         let Some(place) = tier.name.strip_prefix("false belief (estimate): ") else { continue };
         for one in &tier.annotations {
-            let words = one.words.strip_prefix("thinks ").expect("what is thought").to_string();
-            exported.insert((SessionTime::from_secs_f64(one.begin_s), place.to_string(), words));
+            exported.insert((SessionTime::from_secs_f64(one.begin_s), place.to_string(), one.words.clone()));
         }
     }
     let near = |time: SessionTime| SessionTime(time.0 / 1000);

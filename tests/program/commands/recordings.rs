@@ -201,14 +201,14 @@ fn errors_of_a_recording_are_listed_as_commands_that_open_the_viewer_there() {
     let told = list(&["--errors", "--signals", "--beliefs"]);
     let line =
         |words: &str| told.lines().find(|line| line.contains(words)).unwrap_or_else(|| panic!("{words}: {told}"));
-    for words in [", error 1: ", ", error 3: ", ", false belief: ", ", signal: "] {
+    for words in [", error 1: ", ", error 3: ", ", false belief 1: ", ", signal: "] {
         let (command, comment) = line(words).split_once("  # to ").expect("a comment");
         assert!(comment.split_once(words.trim_end()).is_some_and(|(until, _)| !until.is_empty()), "{comment}");
         let at = command.strip_prefix(&format!("tomcom review {recording} --at ")).expect("a command");
         // What is printed is taken: the refusal is of --errors beside it.
         assert!(complaint(&["review", recording, "--errors", "--at", at]).contains("--errors"), "{at}");
     }
-    assert!(line(", false belief: ").contains(", truly "), "{told}");
+    assert!(line(", false belief 1: ").contains(": thinks "), "{told}");
     // Each option lists its own only.
     let listed = list(&["--errors"]);
     assert!(listed.lines().all(|line| line.contains(", error ")), "{listed}");

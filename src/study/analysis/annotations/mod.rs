@@ -146,11 +146,8 @@ impl AnnotationCollector {
         if !blind {
             tiers.push(spells("signals".to_string(), self.signals));
             for (index, aspect) in kitchen.aspects.iter().enumerate() {
-                let of_aspect = follower.false_beliefs.all().filter(|one| one.aspect.index() == index).map(|one| {
-                    let [thinks, truth] = one.contents(kitchen);
-                    (one.began, one.ended, format!("thinks {thinks}, truly {truth}"))
-                });
-                let of_aspect: Vec<_> = of_aspect.collect();
+                let of_aspect = follower.false_beliefs.all().filter(|one| one.aspect.index() == index);
+                let of_aspect: Vec<_> = of_aspect.map(|one| (one.began, one.ended, one.told(kitchen))).collect();
                 if !of_aspect.is_empty() {
                     tiers.push(spells(
                         format!("false belief (estimate): {}", wording::location(&aspect.name)),

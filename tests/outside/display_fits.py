@@ -92,6 +92,16 @@ MEASURE = """([states, DISTANCE_M]) => Object.entries(states).map(([name, sight]
   }
   const open = document.querySelector(".recipe.open"), theirs = document.querySelector(".zone.robot");
   if (open && meets(box(open), box(theirs))) found.push("the recipe hides the robot's side");
+  // Buttons of a card stand in it, and a line about no place over none of its edges.
+  for (const made of document.querySelectorAll(".sheet.open .card button:not(.given *)")) {
+    if (isSeen(made) && !inside(box(made), box(made.closest(".card")))) found.push(`${made.textContent} leaves the card`);
+  }
+  if (card) {
+    Stage.say("nothing");
+    const said = document.querySelector(".why.says");
+    if (!said || (meets(box(said), box(card)) && !inside(box(said), box(card)))) found.push("a line stands over the edge of the card, or is not there");
+    Stage.say("");
+  }
   const ruler = document.createElement("canvas").getContext("2d");
   const minutes = Object.fromEntries(texts.map(({ made, said }) => {
     const { fontWeight, fontSize, fontFamily } = getComputedStyle(made);

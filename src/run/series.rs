@@ -382,7 +382,10 @@ pub(super) fn stands(progress: &ParticipantProgress) -> String {
             format!("{code}: {done} of {all} done, next: {} again (attempt {attempt})", slot_name(progress, *slot))
         }
         NextRecording::Choose { slot, recording, .. } => {
-            format!("{code}: {done} of {all} done, {} is unfinished in {recording}", slot_name(progress, *slot))
+            let slot = slot_name(progress, *slot);
+            format!(
+                "{code}: {done} of {all} done, {slot} is unfinished in {recording}: go on with tomcom operate SESSION --code {code}"
+            )
         }
         NextRecording::Running { slot, recording } => {
             format!("{code}: {done} of {all} done, {} is being recorded in {recording}", slot_name(progress, *slot))

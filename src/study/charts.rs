@@ -234,7 +234,7 @@ fn aside(index: usize) -> f64 {
     [0.0, -0.06, 0.06, -0.12, 0.12, -0.18, 0.18][index % 7]
 }
 
-/// Largest ratio that is drawn to scale; longer intervals end at the border of the chart.
+/// Largest ratio that is drawn to scale; at the border of the chart longer intervals say where they end.
 const LARGEST: f64 = 4.0;
 
 pub fn ratios(contrasts: &[StudyArmContrast]) -> Option<Markup> {
@@ -250,8 +250,11 @@ pub fn ratios(contrasts: &[StudyArmContrast]) -> Option<Markup> {
     chart.line("ideal", &[(-0.5, 1.0), (contrasts.len() as f64 - 0.5, 1.0)]);
     for (x, one) in contrasts.iter().enumerate() {
         let x = x as f64;
-        let [low, high] = one.interval.map(|end| end.min(LARGEST));
-        chart.line("mean", &[(x, low), (x, high)]);
+        let [low, high] = one.interval;
+        chart.line("mean", &[(x, low.min(LARGEST)), (x, high.min(LARGEST))]);
+        if high > LARGEST {
+            chart.words("strong", x + 0.06, LARGEST, true, &format!("to {high:.2}"));
+        }
         let title = format!("{} to {}: {:.2}", one.arm.title(), one.against.title(), one.ratio);
         chart.point("assisted", x, one.ratio.min(LARGEST), &title);
         chart.words("strong", x + 0.06, one.ratio.min(LARGEST), true, &format!("{:.2}", one.ratio));

@@ -254,8 +254,11 @@ fn least_reliable<'a>(trials: impl Iterator<Item = &'a &'a TrialStatistics>) -> 
 }
 
 fn title(facts: &RecordingFacts, simulated: bool) -> String {
-    let kitchen = facts.all("kitchen").unwrap_or_else(|| "No kitchen".to_string());
-    if simulated { format!("{kitchen}: a study of simulated participants") } else { format!("{kitchen}: a study") }
+    let of = if simulated { " of simulated participants" } else { "" };
+    match facts.all("kitchen") {
+        Some(kitchen) => format!("{kitchen}: a study{of}"),
+        None => format!("A study{of}"),
+    }
 }
 
 /// Pairs of raters in words: "R1 and R2", with their numbers of trials if there are several pairs.

@@ -222,28 +222,34 @@ def main(tomcom, folder):
     answers = {"age": 31, "hand": "left", "tired": 5, "job": TYPED}
     add_person(planned[0], answers)
 
-    tree = folder / "bids"
+    # Recordings of no plan have a tree of their own: beside those of a plan they are left out, and named.
+    tree, tree_alone = folder / "bids", folder / "bids-alone"
     told = json.loads(run(tomcom, "export", recordings, "--bids", tree, "--format", "json"))["bids"]
-    found = validate(tree)
-    assert not found["error"], json.dumps(found["error"], indent=1)[:4000]
-    assert set(found["warning"]) <= set(WARNINGS), {code: found["warning"][code][:4] for code in set(found["warning"]) - set(WARNINGS)}
-    print(f"validator: no error; warned of {', '.join(sorted(found['warning']))}", flush=True)
+    assert sorted(one["recording"] for one in told["foreign"]) == [path.name for path in alone], told["foreign"]
+    told_alone = json.loads(run(tomcom, "export", *alone, "--bids", tree_alone, "--format", "json"))["bids"]
+    assert (len(told["recordings"]), len(told_alone["recordings"])) == (4, 3)
+    warned = set()
+    for found in (validate(tree), validate(tree_alone)):
+        assert not found["error"], json.dumps(found["error"], indent=1)[:4000]
+        assert set(found["warning"]) <= set(WARNINGS), {code: found["warning"][code][:4] for code in set(found["warning"]) - set(WARNINGS)}
+        warned |= set(found["warning"])
+    print(f"validator: no error; warned of {', '.join(sorted(warned))}", flush=True)
 
-    rows = {}
-    assert len(told["recordings"]) == 7
-    for one in told["recordings"]:
-        for name, count in check_recording(tree, one["place"], Path(one["recording"])).items():
+    rows, events = {}, 0
+    for where, one in [(tree, one) for one in told["recordings"]] + [(tree_alone, one) for one in told_alone["recordings"]]:
+        for name, count in check_recording(where, one["place"], Path(one["recording"])).items():
             rows[name] = rows.get(name, 0) + count
-    events = sum(len(lines(Path(one["recording"]))) - 1 for one in told["recordings"])
+        events += len(lines(Path(one["recording"]))) - 1
     assert events == sum(count for name, count in rows.items() if name != "beh.tsv")
     assert {"recording-eye1_physio.tsv.gz", "recording-eye1_physioevents.tsv.gz", "recording-arm_stim.tsv.gz"} <= set(rows)
     print(f"rows: {events} events of 7 logs in {rows}; {check_errors(tomcom, tree, told, folder)} presses judged alike", flush=True)
 
     people = table(tree / "participants.tsv")
-    labels = dict(zip(people["code"], people["participant_id"]))
-    assert len(people) == 2 + 3 and len({label.lower() for label in labels.values()}) == 5, labels
+    others = table(tree_alone / "participants.tsv")
+    labels = dict(zip(others["code"], others["participant_id"]))
+    assert len(people) == 2 and len(others) == 3 and len({label.lower() for label in labels.values()}) == 3, labels
     assert labels["Q07"] == "sub-Q07" and sorted(labels[code] for code in ("Q-07", "Q_07")) == ["sub-Q07x2", "sub-Q07x3"], labels
-    assert {code for code, _ in told["changed_codes"]} == {"Q-07", "Q_07"}
+    assert {code for code, _ in told_alone["changed_codes"]} == {"Q-07", "Q_07"}
     [filled] = table(tree / "phenotype/demographics.tsv").to_dict("records")
     assert {key: filled[key] for key in ("age", "hand", "tired")} == {"age": 31, "hand": "left", "tired": 5}
     assert "job" not in filled and filled["participant_id"] in people["participant_id"].tolist()

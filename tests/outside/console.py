@@ -93,15 +93,15 @@ class Console:
         os.write(self.master, sent)
 
     def start(self):
-        """Starts the trial, as soon as nothing that is looked at before it speaks against it."""
+        """Starts the trial, as soon as nothing that is looked at before it speaks against it, but that nobody checked the gaze."""
         self.key(".")
         self.wait_for("RUNNING|Checks before the trial")
         if "RUNNING" not in self.text():
             # Gaze that has only just begun to arrive is slow for a second.
-            self.wait_for("start the trial +esc close")
+            self.wait_for(r"start the trial +esc close|ok +gaze +\d+ gaze samples(.|\n)*start the trial anyway")
             # Where nothing was wrong any more when the list came up, that was only just now.
             time.sleep(OWN_KEY_S)
-            self.key(".")
+            self.key("o" if "start the trial anyway" in self.text() else ".")
             self.wait_for("RUNNING")
 
     def end(self):

@@ -93,10 +93,8 @@ pub struct UrDriver {
     program: Program,
     /// When the power was asked for, and whether the brakes were.
     powers: Option<(f64, bool)>,
-    /// When the next try to let the arm go on is due, if the wizard wants that.
-    resumes: Option<f64>,
-    /// When unlocking was tried first.
-    unlocks: Option<f64>,
+    /// When the next try to let the arm go on is due, if the wizard wants that, and when unlocking was tried first.
+    resumes: Option<(f64, Option<f64>)>,
     wants_dry_run: bool,
     /// Whether the wizard has confirmed a dry run.
     is_tried: bool,
@@ -144,7 +142,6 @@ impl UrDriver {
             program: Program::Stopped,
             powers: None,
             resumes: None,
-            unlocks: None,
             wants_dry_run: false,
             is_tried: false,
             order: ArmOrder { stands: true, ..ArmOrder::default() },
@@ -204,14 +201,14 @@ impl UrDriver {
             }
             ArmStage::Untried => match self.geometry() {
                 Ok(()) if self.program == Program::Runs => self.begin_dry_run(),
-                Ok(()) => (self.wants_dry_run, self.resumes) = (true, Some(0.0)),
+                Ok(()) => (self.wants_dry_run, self.resumes) = (true, Some((0.0, None))),
                 Err(why) => self.to(ArmStage::Untried, why),
             },
             ArmStage::Tried => {
                 self.is_tried = true;
                 self.to(ArmStage::Ready, "");
             }
-            ArmStage::Stopped => self.resumes = Some(0.0),
+            ArmStage::Stopped => self.resumes = Some((0.0, None)),
             ArmStage::Lost | ArmStage::Starts | ArmStage::DryRun | ArmStage::Ready => {}
         }
     }
@@ -300,7 +297,7 @@ impl UrDriver {
             return self.follow_switch(reading, now_s);
         }
         if self.powers.take().is_some() && self.is_tried {
-            self.resumes = Some(now_s);
+            self.resumes = Some((now_s, None));
         }
         if reading.safety.is_stopped() {
             self.program_ends();
@@ -363,18 +360,19 @@ impl UrDriver {
 
     fn unlock(&mut self, safety: SafetyMode, now_s: f64) {
         match self.resumes {
-            None if self.stage == ArmStage::Stopped => self.unlocks = None,
+            None if self.stage == ArmStage::Stopped => {}
             None => self.to(ArmStage::Stopped, SAFETY_STOP),
             Some(_) if safety != SafetyMode::ProtectiveStop => {
                 self.resumes = None;
                 self.to(ArmStage::Stopped, format!("end the {} at the teach pendant", safety.name().to_lowercase()));
             }
-            Some(due_s) if now_s >= due_s => {
-                if now_s - *self.unlocks.get_or_insert(now_s) > UNLOCKS_WITHIN_S {
+            Some((due_s, first_s)) if now_s >= due_s => {
+                let first_s = first_s.unwrap_or(now_s);
+                if now_s - first_s > UNLOCKS_WITHIN_S {
                     self.resumes = None;
                     return self.to(ArmStage::Stopped, "it cannot be unlocked from here: see the teach pendant");
                 }
-                self.resumes = Some(now_s + UNLOCKS_EVERY_S);
+                self.resumes = Some((now_s + UNLOCKS_EVERY_S, Some(first_s)));
                 let commands = ["close safety popup", "unlock protective stop"].map(DriverAction::Dashboard);
                 self.waiting.extend(commands);
                 self.to(ArmStage::Starts, "it is unlocked, at the earliest 5 s after the stop");

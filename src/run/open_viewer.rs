@@ -14,7 +14,7 @@ use tomcom_core::measures::raters::CodableErrors;
 use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_devices::rerun::{FilmFrame, RerunWriter, ShownRecording, StreamIdentity, StreamOutlets, WebViewer};
 use tomcom_devices::rrd::{self, RRD_NAME, RerunFileState};
-use tomcom_devices::scene::{SceneInputs, SceneUpdate, SessionScene, TimedBars, facts, has_poses, title};
+use tomcom_devices::scene::{SceneInputs, SceneUpdate, SessionScene, TimedBars, facts, title};
 use tomcom_devices::stream::PORTS;
 use tomcom_devices::stream_head;
 use tomcom_devices::viewer::{self, ViewerAvailability};
@@ -316,9 +316,9 @@ fn playing(recordings: &[PathBuf], with_films: bool) -> FileResult<Vec<Playing>>
             (_, false) => root,
         };
         let title = title(playing.replay.session(), &names[nth]);
-        let (films, session) = (playing.films.len(), playing.replay.session());
-        let (has_arm, has_advice) = (has_poses(session), session.spec.asks_assistant());
-        Ok(Playing { lane: ShownRecording { root, title, films, has_arm, has_advice }, ..playing })
+        let films = playing.films.len();
+        let lane = ShownRecording { root, films, ..ShownRecording::of(playing.replay.session(), title) };
+        Ok(Playing { lane, ..playing })
     };
     recordings.iter().enumerate().map(one).collect()
 }
@@ -431,11 +431,12 @@ pub fn landmarks(recording: &Path, kinds: &[ReplayLandmark]) -> FileResult<Vec<R
         }
     }
     if kinds.contains(&ReplayLandmark::FalseBelief) {
-        let numbered: Vec<_> = follower.false_beliefs.lasting(session).collect();
+        // A replay numbers, and stops at, those that last.
+        let mut numbers = 1..;
         for held in follower.false_beliefs.all() {
-            let number = numbered.iter().position(|one| *one == held).map(|nth| format!(" {}", nth + 1));
-            let (number, told) = (number.unwrap_or_default(), held.told(kitchen));
-            add(held.began, held.ended, format!("false belief{number}: {}: {told}", held.about));
+            let number = held.lasts(session).then(|| numbers.next()).flatten();
+            let number = number.map_or_else(String::new, |number| format!(" {number}"));
+            add(held.began, held.ended, format!("false belief{number}: {}: {}", held.about, held.told(kitchen)));
         }
     }
     found.sort_by_key(|one| one.from);

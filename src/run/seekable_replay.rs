@@ -352,7 +352,7 @@ impl SeekableReplay {
     /// The false beliefs of the estimate at which a replay stops: those that last, as far as the recording was read.
     fn false_beliefs(&self) -> impl Iterator<Item = &EstimatedFalseBelief> {
         let SessionFollower { false_beliefs, session, .. } = &self.replay.follower;
-        false_beliefs.lasting(session)
+        false_beliefs.all().filter(|one| one.lasts(session))
     }
 
     /// Times of the landmarks of this kind, as far as the recording was read.
@@ -390,15 +390,18 @@ impl SeekableReplay {
 
     /// What the landmark of this kind is at which the replay stands.
     fn told(&self, what: ReplayLandmark) -> Option<String> {
-        let (session, now) = (&self.session, self.time());
-        let entries = || session.timeline.iter().rev().take_while(|entry| entry.time == now).map(|entry| &entry.what);
+        let (session, now) = (self.replay.session(), self.time());
+        // The whole recording knows the words of a note that the wizard typed later.
+        let until = session.timeline.partition_point(|entry| entry.time <= now);
+        let mut entries =
+            session.timeline[..until].iter().rev().take_while(|entry| entry.time == now).map(|entry| &entry.what);
         match what {
             ReplayLandmark::Error => {
                 let error = self.errors.iter().find(|error| error.time == now)?;
                 let why = if self.is_blinded { &error.why } else { &error.with_cause };
                 Some(format!("{}: {why}", error.press))
             }
-            ReplayLandmark::Signal => entries().find_map(|entry| match entry {
+            ReplayLandmark::Signal => entries.find_map(|entry| match entry {
                 TimelineEvent::Noted(Event::SignalShown { by, signal, .. }) => {
                     let (follower, mut shown) = (&self.replay.follower, self.replay.follower.signals.shown.iter());
                     let Some(nth) = shown.position(|shown| shown.time == now) else {
@@ -410,20 +413,15 @@ impl SeekableReplay {
                 }
                 _ => None,
             }),
-            // The whole recording knows the words that the wizard typed later.
-            ReplayLandmark::Marker => {
-                let timeline = &self.replay.session().timeline;
-                let first = timeline.partition_point(|entry| entry.time < now);
-                timeline[first..].iter().take_while(|entry| entry.time == now).find_map(|entry| match &entry.what {
-                    TimelineEvent::Noted(Event::Marker { note, observer }) => {
-                        Some(event_words::noted_words(note, observer.as_deref()))
-                    }
-                    _ => None,
-                })
-            }
+            ReplayLandmark::Marker => entries.find_map(|entry| match entry {
+                TimelineEvent::Noted(Event::Marker { note, observer }) => {
+                    Some(event_words::noted_words(note, observer.as_deref()))
+                }
+                _ => None,
+            }),
             ReplayLandmark::FalseBelief => {
                 let told = self.false_beliefs().filter(|one| one.began == now).map(|one| {
-                    let lasted_s = one.lasted_s(self.replay.session());
+                    let lasted_s = one.lasted_s(session);
                     format!("{}: {}; for {lasted_s:.1} s", one.about, one.told(&session.kitchen))
                 });
                 Some(told.collect::<Vec<_>>().join("; "))

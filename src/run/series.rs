@@ -126,8 +126,7 @@ impl Planned {
     }
 
     /// The question whether a recording is meant, where others in the folder are of another version of the plan.
-    fn changed(&self, code: &str) -> Result<Option<StartPrompt>, LiveError> {
-        let (made, _) = recordings_of(&self.study, &self.series.out)?;
+    fn changed(&self, made: &[PlanRecording], code: &str) -> Result<Option<StartPrompt>, LiveError> {
         let others: Vec<&PlanRecording> = made.iter().filter(|made| made.step.digest != self.study.digest).collect();
         let Some(last) = others.last() else { return Ok(None) };
         let out = &self.series.out;
@@ -146,8 +145,7 @@ impl Planned {
     }
 
     /// The question whether a recording is meant, where another of the participant is of another kind of participant.
-    fn other_kind(&self, code: &str) -> Result<Option<StartPrompt>, LiveError> {
-        let (made, _) = recordings_of(&self.study, &self.series.out)?;
+    fn other_kind(&self, made: &[PlanRecording], code: &str) -> Result<Option<StartPrompt>, LiveError> {
         let kind = self.study.session.participant.kind;
         for PlanRecording { recording, .. } in made.iter().rev().filter(|made| made.code == code) {
             let before = LogReader::open(&self.series.out.join(recording))?.header.session.participant.kind;
@@ -184,7 +182,8 @@ impl Planned {
         {
             return Ok(SeriesOutcome { done, remark: Some(stands(&progress)) });
         }
-        for question in [self.changed(&code)?, self.other_kind(&code)?].into_iter().flatten() {
+        let (made, _) = recordings_of(&self.study, &self.series.out)?;
+        for question in [self.changed(&made, &code)?, self.other_kind(&made, &code)?].into_iter().flatten() {
             if ask(&mut station, question).await? != Some(0) {
                 return Ok(SeriesOutcome { done, remark: Some(stands(&progress)) });
             }

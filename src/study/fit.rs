@@ -31,9 +31,9 @@ pub struct FitTrials {
 }
 
 impl FitTrials {
-    /// Reads recordings for a fit, without practice and excluded ones; answers to freeze probes are read only with `probes`. Errors: a recording cannot be
-    /// read or replayed; the recordings are of different kitchens; there are no answers although `probes` asks for
-    /// them.
+    /// Reads recordings for a fit, without practice and excluded ones; answers to freeze probes are read only with
+    /// `probes`. Errors: a recording cannot be read or replayed; the recordings are of different kitchens; there are no
+    /// answers although `probes` asks for them.
     pub fn read(recordings: &GatheredRecordings, probes: bool) -> FileResult<FitTrials> {
         let recordings = &recordings.paths;
         let (mut one_kitchen, mut observations, mut left_out) = (SameKitchenCheck::default(), Vec::new(), Vec::new());
@@ -103,8 +103,7 @@ fn read_trial(replay: &mut RecordingReplay) -> FileResult<FitObservations> {
                 let kitchen = &replay.session().kitchen;
                 let aspect = asked.and_then(|asked| probe_sampling::aspect(kitchen, &asked.about));
                 trial.answers.extend(aspect.map(|aspect| {
-                    let labels = &kitchen.aspects[aspect.index()].labels;
-                    let value = labels.iter().position(|label| Some(label) == answer.as_ref());
+                    let value = answer.and_then(|answer| kitchen.aspects[aspect.index()].value_named(&answer));
                     ProbeAnswerObservation { after: frozen, aspect, value }
                 }));
             }

@@ -16,10 +16,10 @@ from rerun.experimental import RrdReader
 RERUN = Path(find_spec("rerun_sdk").submodule_search_locations[0]) / "rerun_cli" / "rerun"
 LEAST_PRESSES = 20
 FALSE_BELOW = 0.5
-# How many curves and marks have a colour of their own, and how long after a curve's end another one may have it.
+# Number of curves and marks with a colour of their own; time after a curve's end from which another one may have it.
 COLOURS = 6
 APART_NS = 60_000_000_000
-# A curve begins when a belief has been false so long, and is drawn so often between presses.
+# Time for which a belief is false before its curve begins; period of the curve's rows between presses.
 LASTING_NS = 1_000_000_000
 SHOWN_EVERY_NS = 200_000_000
 
@@ -95,30 +95,31 @@ def expected(log):
     return found, beliefs
 
 
-def curves_of(stream):
-    """For every curve and every mark of beliefs, the values by (time in ns, step), and the places at which a curve ends."""
-    values, ends = {}, {}
+def column(stream, top, name):
+    """The (entity, (time in ns, step), value) of each row of a column, of the entities below `top`."""
     for chunk in RrdReader(stream).stream():
         entity, batch = str(chunk.entity_path).strip("/"), chunk.to_record_batch()
-        if chunk.is_static or not entity.startswith("human/belief/") or "Scalars:scalars" not in batch.schema.names:
-            continue
-        times = batch.column("session_time").cast("int64").to_pylist()
-        for place, value in zip(zip(times, batch.column("step").to_pylist()), batch.column("Scalars:scalars").to_pylist()):
-            if value:
-                values.setdefault(entity, {})[place] = value[0]
-            elif value is not None:
-                ends.setdefault(entity, set()).add(place)
+        if not chunk.is_static and entity.startswith(top) and name in batch.schema.names:
+            places = zip(batch.column("session_time").cast("int64").to_pylist(), batch.column("step").to_pylist())
+            yield from ((entity, place, value) for place, value in zip(places, batch.column(name).to_pylist()))
+
+
+def curves_of(stream):
+    """For every curve and every mark of beliefs, the values by place, and the places at which a curve ends."""
+    values, ends = {}, {}
+    for entity, place, value in column(stream, "human/belief/", "Scalars:scalars"):
+        if value:
+            values.setdefault(entity, {})[place] = value[0]
+        elif value is not None:
+            ends.setdefault(entity, set()).add(place)
     return values, ends
 
 
 def bars_of(stream):
     """For every aspect, the (beginning, end) in ns of the bars of false beliefs."""
     states = {}
-    for chunk in RrdReader(stream).stream():
-        entity, batch = str(chunk.entity_path).strip("/"), chunk.to_record_batch()
-        if not chunk.is_static and entity.startswith("wrong_belief/") and "StateChange:state" in batch.schema.names:
-            times = batch.column("session_time").cast("int64").to_pylist()
-            states.setdefault(entity.split("/")[-1], []).extend(zip(times, batch.column("StateChange:state").to_pylist()))
+    for entity, (time, _), words in column(stream, "wrong_belief/", "StateChange:state"):
+        states.setdefault(entity.split("/")[-1], []).append((time, words))
     bars = {}
     for aspect, changes in states.items():
         changes.sort()

@@ -122,8 +122,8 @@ impl ShownOffer<'_> {
         let kitchen = &session.kitchen;
         let aspect = kitchen.aspect_named(&reason.aspect);
         let values = aspect.and_then(|aspect| {
-            let value = |label: &String| kitchen.aspects[aspect.index()].labels.iter().position(|known| known == label);
-            Some((aspect, value(&reason.believes)?, value(&reason.truth)?))
+            let about = &kitchen.aspects[aspect.index()];
+            Some((aspect, about.value_named(&reason.believes)?, about.value_named(&reason.truth)?))
         });
         let (believes, truth) = match values {
             Some((aspect, believes, truth)) => wording::contrast(kitchen, aspect, believes, truth),
@@ -160,14 +160,10 @@ impl ShownOffer<'_> {
 
 /// When the human has pressed a button since this time, on the trial's clock.
 fn pressed_since(session: &Session, button: &str, since: SessionTime) -> Option<SessionTime> {
+    let wanted = session.kitchen.button_named(Agent::Human, button)?;
+    let is_it = |what: &TimelineEvent| matches!(what, TimelineEvent::Press { agent: Agent::Human, button, .. } if *button == wanted);
     let later = session.timeline.iter().rev().take_while(|entry| entry.time > since);
-    let pressed = later.filter(|entry| match entry.what {
-        TimelineEvent::Press { agent: Agent::Human, button: id, .. } => {
-            session.kitchen.button(Agent::Human, id).name == button
-        }
-        _ => false,
-    });
-    pressed.last().map(|entry| session.trial_clock_at(entry.time))
+    later.filter(|entry| is_it(&entry.what)).last().map(|entry| session.trial_clock_at(entry.time))
 }
 
 /// Probability of a wrong value below which an offer is worth its cost only since the belief would be costly.

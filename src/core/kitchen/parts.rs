@@ -415,4 +415,9 @@ impl StateAspect {
     pub fn index_of(&self, code: u8) -> Option<usize> {
         self.values.iter().position(|&value| value == code)
     }
+
+    /// The index of a possible value of the aspect, from the value's name in logs and tables.
+    pub fn value_named(&self, label: &str) -> Option<usize> {
+        self.labels.iter().position(|known| known == label)
+    }
 }

@@ -39,7 +39,7 @@ impl Belief {
             let mut values: Vec<Option<f64>> = vec![None; aspect.values.len()];
             values[kitchen.true_value(state, AspectId(index as u8))] = Some(told.p_truth);
             for (label, &p) in &told.values {
-                let value = aspect.labels.iter().position(|other| other == label)?;
+                let value = aspect.value_named(label)?;
                 values[value] = Some(p);
             }
             belief.of.push(completed(&values)?);

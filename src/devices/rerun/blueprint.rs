@@ -17,7 +17,8 @@ use re_sdk_types::blueprint::archetypes::{
 use re_sdk_types::blueprint::components::{Corner2D, LinkAxis};
 use re_sdk_types::datatypes::{Range2D, TimeInt, TimeRange, TimeRangeBoundary, VisibleTimeRange};
 
-use crate::scene::WIDE;
+use crate::scene::{WIDE, has_poses};
+use tomcom_session::Session;
 
 /// Application name of all streams, by which recordings share one layout in the Rerun viewer.
 pub(super) const APPLICATION: &str = "tomcom";
@@ -53,6 +54,14 @@ pub struct ShownRecording {
     pub has_arm: bool,
     /// Whether an assistant is asked, so that there are net benefits of signals.
     pub has_advice: bool,
+}
+
+impl ShownRecording {
+    /// A recording alone in a stream, without films.
+    pub fn of(session: &Session, title: String) -> ShownRecording {
+        let (has_arm, has_advice) = (has_poses(session), session.spec.asks_assistant());
+        ShownRecording { title, has_arm, has_advice, ..ShownRecording::default() }
+    }
 }
 
 /// A property of a view: its path in the blueprint, and its components.

@@ -384,7 +384,7 @@ fn thinks(kitchen: &Kitchen, state: State, held: &Held) -> (String, String) {
 /// Beliefs that an event tells, by the names of their values.
 fn recorded<'a>(kitchen: &Kitchen, state: State, told: impl Iterator<Item = (&'a str, f64)>) -> Vec<Held> {
     let held = |(aspect, (believes, p_truth)): (usize, (&str, f64))| {
-        let known = kitchen.aspects[aspect].labels.iter().position(|label| label == believes);
+        let known = kitchen.aspects[aspect].value_named(believes);
         Held { aspect, thinks: known.unwrap_or_else(|| kitchen.true_value(state, AspectId(aspect as u8))), p_truth }
     };
     told.enumerate().map(held).collect()

@@ -6,7 +6,7 @@ use std::net::SocketAddr;
 use crate::console::console_model::RerunStreamStatus;
 use tomcom_devices::rerun::{ShownRecording, StreamIdentity, uri};
 use tomcom_devices::rrd::{self, RRD_NAME};
-use tomcom_devices::scene::{SceneInputs, SessionScene, facts, has_poses, title};
+use tomcom_devices::scene::{SceneInputs, SessionScene, facts, title};
 use tomcom_devices::stream::RerunStream;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::log::{LOG_NAME, LogWriter};
@@ -50,8 +50,7 @@ impl StreamedSession {
         let identity = StreamIdentity { id: format!("{name} {began} {whole}"), name: title(session, &name), facts };
         let address = spec.live.then(|| spec.address.parse::<SocketAddr>()).transpose();
         let server = address.map_err(|error| format!("{}: {error}", spec.address))?;
-        let (has_arm, has_advice) = (has_poses(session), session.spec.asks_assistant());
-        let lane = ShownRecording { title: identity.name.clone(), has_arm, has_advice, ..ShownRecording::default() };
+        let lane = ShownRecording::of(session, identity.name.clone());
         let stream = RerunStream::open(&identity, file.as_deref(), server, (fixed, opening), lane);
         let stream = stream.map_err(|error| error.to_string())?;
         if let Some(server) = stream.server {

@@ -11,7 +11,7 @@ use tomcom_core::mind::dirichlet::DirichletBelief;
 /// other events count at once.
 const EVERY_NS: u64 = 200_000_000;
 
-/// A false belief lasts if it is held at least so long.
+/// Least duration of a false belief that lasts, in seconds.
 const LEAST_S: f64 = 1.0;
 
 /// One false belief about one state aspect, by the estimate. Another truth, or another wrong value that is believed most, is
@@ -35,6 +35,11 @@ impl EstimatedFalseBelief {
     /// How long it lasted, or has lasted so far, on the trial's clock.
     pub fn lasted_s(&self, session: &Session) -> f64 {
         session.age(self.began, self.ended.unwrap_or(session.time)).as_secs_f64()
+    }
+
+    /// Whether it lasts: half of all are looks that nobody has taken yet.
+    pub fn lasts(&self, session: &Session) -> bool {
+        self.lasted_s(session) >= LEAST_S
     }
 
     /// What is believed and what is true, in words: "thinks empty, is nori".
@@ -92,11 +97,6 @@ impl EstimatedFalseBeliefs {
     /// All but those that were over when other events of the same time had been applied.
     pub fn all(&self) -> impl DoubleEndedIterator<Item = &EstimatedFalseBelief> {
         self.all.iter().filter(|one| one.ended != Some(one.began))
-    }
-
-    /// Those that last, by which they are numbered from 1: half of all are looks that nobody has taken yet.
-    pub fn lasting(&self, session: &Session) -> impl Iterator<Item = &EstimatedFalseBelief> {
-        self.all().filter(|one| one.lasted_s(session) >= LEAST_S)
     }
 
     /// The last false belief about an aspect of which `begun` holds, unless `over` holds of its end.

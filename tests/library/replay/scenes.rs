@@ -341,7 +341,7 @@ fn false_beliefs_are_the_same_in_replay_review_and_annotations() {
     assert!(held.len() > 5, "{} false beliefs", held.len());
     // The replay stops at those that last.
     let film = SeekableReplay::open(recording).expect("it opens");
-    let lasting = replay.follower.false_beliefs.lasting(replay.session());
+    let lasting = replay.follower.false_beliefs.all().filter(|one| one.lasts(replay.session()));
     let began: Vec<SessionTime> = lasting.map(|one| one.began).collect();
     assert!(!began.is_empty() && began.len() < held.len(), "{} of {}", began.len(), held.len());
     assert_eq!(film.landmarks(ReplayLandmark::FalseBelief), began);

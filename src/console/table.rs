@@ -11,6 +11,7 @@ use super::key_action::{KeyAction, KeyBinding, KeyFileTable, KeyLayer, ManualAct
 use tomcom_core::communication::{self, HighlightSet, Signal};
 use tomcom_core::kitchen::{Agent, ButtonId, Kitchen, LocationId};
 use tomcom_core::measures::raters::ErrorCauseKind;
+use tomcom_session::history::wording;
 use tomcom_session::replay::ReplayLandmark;
 use tomcom_session::settings::MAX_NOTES;
 
@@ -332,10 +333,7 @@ fn times() -> [KeyBinding; 2] {
 fn signals(kitchen: &Kitchen) -> impl Iterator<Item = KeyBinding> {
     communication::signals(kitchen, HighlightSet::ALL).into_iter().map(|(id, signal)| {
         let location = kitchen.location(id);
-        let help = match signal {
-            Signal::ShowRecipe(_) => format!("show the recipe of {}", location.label()),
-            Signal::Highlight(_) | Signal::Propose(_) => format!("highlight {}", location.label()),
-        };
+        let help = wording::command(&signal);
         let keys: Vec<KeyChord> = location.signal_key.map(KeyChord::of_letter).into_iter().collect();
         let bound = line(&location.name, &keys, KeyAction::Signal(id, signal), SIGNALS, &help, None);
         KeyBinding { section: KeyFileTable::Signals, layer: Some(KeyLayer::Wizard), ..bound }

@@ -293,11 +293,11 @@ pub fn describe(found: &OfferSteadinessSummary) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tomcom_core::communication::offer::{OfferKeyKind, OfferUse, OfferedAdvice, OfferedCommunication};
+    use tomcom_core::communication::offer::{OfferKeyKind, OfferUse, OfferedAdvice};
 
     /// An offer of one signal that stands for 2 s from `opened_s` on and is outdone by another one.
     fn offer(opened_s: f64, used: Option<OfferUse>) -> TimedOffer {
-        let what = OfferedCommunication::Signal(Signal::Highlight("counter".to_string()));
+        let what = Signal::Highlight("counter".to_string());
         let advice = OfferedAdvice { what, for_seq: 1, worth: None, reason: None, words: None, visible: true };
         let offer = Offer { seq: 2, opened: SessionTime::from_secs_f64(opened_s), advice, used };
         let reason = Some(OfferCloseReason::Replaced);

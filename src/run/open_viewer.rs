@@ -420,7 +420,9 @@ pub fn landmarks(recording: &Path, kinds: &[ReplayLandmark]) -> FileResult<Vec<R
             let coded: String = coded.map(|(rater, code)| format!("; {rater}: {}", wording::code(code))).collect();
             let next = follower.judged.get(nth + 1).map(|next| next.time);
             let ExplainedError { press: name, with_cause, .. } = error;
-            add(press.time, next, format!("error {number}: {name}: {with_cause}{coded}"));
+            let believed = follower.false_beliefs.told_before(session, press.time);
+            let believed = believed.map_or(String::new(), |believed| format!("; {believed}"));
+            add(press.time, next, format!("error {number}: {name}: {with_cause}{believed}{coded}"));
         }
     }
     if kinds.contains(&ReplayLandmark::Signal) {
@@ -436,7 +438,7 @@ pub fn landmarks(recording: &Path, kinds: &[ReplayLandmark]) -> FileResult<Vec<R
         for held in follower.false_beliefs.all() {
             let number = held.lasts(session).then(|| numbers.next()).flatten();
             let number = number.map_or_else(String::new, |number| format!(" {number}"));
-            add(held.began, held.ended, format!("false belief{number}: {}: {}", held.about, held.told(kitchen)));
+            add(held.began, held.ended, format!("false belief{number}: {}", held.whole(session)));
         }
     }
     found.sort_by_key(|one| one.from);

@@ -398,8 +398,12 @@ impl SeekableReplay {
         match what {
             ReplayLandmark::Error => {
                 let error = self.errors.iter().find(|error| error.time == now)?;
-                let why = if self.is_blinded { &error.why } else { &error.with_cause };
-                Some(format!("{}: {why}", error.press))
+                if self.is_blinded {
+                    return Some(format!("{}: {}", error.press, error.why));
+                }
+                let believed = self.replay.follower.false_beliefs.told_before(session, now);
+                let believed = believed.map_or(String::new(), |believed| format!("; {believed}"));
+                Some(format!("{}: {}{believed}", error.press, error.with_cause))
             }
             ReplayLandmark::Signal => entries.find_map(|entry| match entry {
                 TimelineEvent::Noted(Event::SignalShown { by, signal, .. }) => {
@@ -420,10 +424,7 @@ impl SeekableReplay {
                 _ => None,
             }),
             ReplayLandmark::FalseBelief => {
-                let told = self.false_beliefs().filter(|one| one.began == now).map(|one| {
-                    let lasted_s = one.lasted_s(session);
-                    format!("{}: {}; for {lasted_s:.1} s", one.about, one.told(&session.kitchen))
-                });
+                let told = self.false_beliefs().filter(|one| one.began == now).map(|one| one.whole(session));
                 Some(told.collect::<Vec<_>>().join("; "))
             }
         }

@@ -10,7 +10,7 @@ use crate::{Event, Session, TrialPhase};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::offer::{
     GAP, HOLD, Offer, OfferCloseReason, OfferCloseThresholds, OfferKeyKind, OfferUse, OfferWorth, OfferedAdvice,
-    OfferedCommunication, TAKEN_AFTER, UNREAD,
+    TAKEN_AFTER, UNREAD,
 };
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption};
 use tomcom_core::communication::{Sender, Signal, unavailable};
@@ -55,15 +55,13 @@ fn closing(session: &Session, offer: &Offer, now: SessionTime) -> Option<OfferCl
 
 /// Why the latest recommendation closes the open offer.
 fn outdone(session: &Session, offer: &Offer, advice: &Recommendation) -> Option<OfferCloseReason> {
-    let signal = match &offer.advice.what {
-        OfferedCommunication::Signal(signal) => signal,
-        OfferedCommunication::Presses(presses) => {
-            return match &advice.proposal {
-                None => Some(OfferCloseReason::Fell),
-                Some(proposal) => (proposal.presses != *presses).then_some(OfferCloseReason::Replaced),
-            };
-        }
-    };
+    let signal = &offer.advice.what;
+    if let Signal::Propose(presses) = signal {
+        return match &advice.proposal {
+            None => Some(OfferCloseReason::Fell),
+            Some(proposal) => (proposal.presses != *presses).then_some(OfferCloseReason::Replaced),
+        };
+    }
     if offer.advice.worth.is_none() && advice.options.is_empty() {
         // An external concept that names a signal without its value.
         return match &advice.best {
@@ -94,7 +92,7 @@ fn opening(session: &Session, now: SessionTime) -> Option<OfferedAdvice> {
     let advice = session.advice.as_ref()?;
     let (for_seq, visible) = (advice.for_seq, is_visible(session));
     if let Some(proposal) = &advice.proposal {
-        let what = OfferedCommunication::Presses(proposal.presses.clone());
+        let what = Signal::Propose(proposal.presses.clone());
         let words = advice.words.clone();
         return Some(OfferedAdvice { what, for_seq, worth: None, reason: None, words, visible });
     }
@@ -102,7 +100,7 @@ fn opening(session: &Session, now: SessionTime) -> Option<OfferedAdvice> {
         // An external concept that names a signal without its value.
         let signal = advice.best.as_ref()?;
         let is_possible = unavailable(&session.kitchen, session.state, signal).is_none();
-        let (what, words) = (OfferedCommunication::Signal(signal.clone()), advice.words.clone());
+        let (what, words) = (signal.clone(), advice.words.clone());
         return is_possible.then_some(OfferedAdvice { what, for_seq, worth: None, reason: None, words, visible });
     }
     let option = candidate(session, advice)?;
@@ -111,7 +109,7 @@ fn opening(session: &Session, now: SessionTime) -> Option<OfferedAdvice> {
     // The recommendation gives a reason for its best signal only.
     let is_best = advice.best.as_ref() == Some(&option.signal);
     let (reason, words) = (advice.reason.clone().filter(|_| is_best), advice.words.clone().filter(|_| is_best));
-    let what = OfferedCommunication::Signal(option.signal.clone());
+    let what = option.signal.clone();
     Some(OfferedAdvice { what, for_seq, worth, reason, words, visible })
 }
 

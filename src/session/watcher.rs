@@ -17,7 +17,7 @@ use crate::event::WizardScreenContent;
 use crate::follower::SessionFollower;
 use crate::history::belief_track::BeliefSnapshot;
 use crate::history::comparison::{
-    Communication, CommunicationContent, CommunicationContext, SenderCommunications, SenderComparison,
+    Communication, CommunicationContext, SenderCommunications, SenderComparison,
 };
 use crate::settings::Condition;
 use crate::{AppliedEvent, Event, Session, SessionSpec, TimestampedEvent};
@@ -28,7 +28,7 @@ use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::communication::signal::SignalRepeatRule;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, KitchenChange, LocationId, State};
-use tomcom_core::measures::matching::CommunicationEvent;
+use tomcom_core::measures::matching::{CommunicationEvent, ComparedContent};
 use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_core::mind::filter::BeliefFilter;
 use tomcom_core::mind::observation::{Observation, ObservedEvidence};
@@ -143,7 +143,7 @@ impl SenderComparisonFollower {
         if let (Some(filter), Event::SignalShown { signal, .. }) = (filter, &stamped.event) {
             let (press, state) = (self.presses(), self.follower.session.state);
             self.counterfactuals.push_back(CounterfactualFilter { press, signal: signal.clone(), state, filter });
-            let spoken = self.spoken(CommunicationContent::from_signal(signal), stamped.time);
+            let spoken = self.spoken(signal.clone(), stamped.time);
             self.sent.push(spoken);
         }
         match &stamped.event {
@@ -227,9 +227,9 @@ impl SenderComparisonFollower {
         }
     }
 
-    fn spoken(&self, what: CommunicationContent, time: SessionTime) -> Communication {
+    fn spoken(&self, what: Signal, time: SessionTime) -> Communication {
         let session = &self.follower.session;
-        let (press, content) = (self.presses(), what.content(&session.kitchen));
+        let (press, content) = (self.presses(), ComparedContent::of_signal(&session.kitchen, &what));
         let said = CommunicationEvent { press, clock: session.trial_clock(time), content };
         Communication { said, time, what, known: self.known.clone() }
     }
@@ -277,7 +277,7 @@ impl SenderComparisonFollower {
     }
 
     /// The hypothetical signal to which a recommendation leads; the concept remembers it so as not to repeat it.
-    fn says(&mut self, index: usize, advice: &Recommendation) -> Option<CommunicationContent> {
+    fn says(&mut self, index: usize, advice: &Recommendation) -> Option<Signal> {
         let session = &self.follower.session;
         let voice = &mut self.voices[index];
         if let Some(signal) = &advice.best {
@@ -287,12 +287,12 @@ impl SenderComparisonFollower {
             // when the older signal leaves the window.
             voice.said.retain(|(_, earlier)| Some(*earlier) != location);
             voice.said.extend(location.map(|location| (session.presses[Agent::Human.index()], location)));
-            return Some(CommunicationContent::Signal(signal.clone()));
+            return Some(signal.clone());
         }
         // The concept DEV proposes presses once per error, even while no later error follows.
         let proposal = advice.proposal.as_ref().filter(|proposal| voice.proposed != Some(proposal.error))?;
         voice.proposed = Some(proposal.error);
-        Some(CommunicationContent::Proposal(proposal.presses.clone()))
+        Some(Signal::Propose(proposal.presses.clone()))
     }
 
     /// `over`: the session has ended.

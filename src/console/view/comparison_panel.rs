@@ -13,9 +13,10 @@ use crate::console::key_action::{KeyAction, ViewAction};
 use crate::console::text_columns::width;
 use tomcom_core::base::text::decimal;
 use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::SignalKind;
 use tomcom_session::Session;
 use tomcom_session::history::comparison::{
-    Communication, CommunicationContent, SenderComparison, UnmatchedCommunication,
+    Communication, SenderComparison, UnmatchedCommunication,
 };
 
 /// Time that one terminal column of the comparison stands for, in seconds.
@@ -106,8 +107,10 @@ impl View<'_> {
 
     /// Sign of a communication in its lane: the key of a signal, or a common sign for a proposal of presses.
     fn sign(&self, brush: &Painter, spoken: &Communication) -> String {
-        let CommunicationContent::Signal(signal) = &spoken.what else { return brush.theme.signs().by_hand.to_string() };
-        let location = signal.location(&self.session.kitchen);
+        if spoken.what.kind() == SignalKind::Proposal {
+            return brush.theme.signs().by_hand.to_string();
+        }
+        let location = spoken.what.location(&self.session.kitchen);
         location.and_then(|id| self.model.keys.mark(id)).map_or("!".to_string(), |chord| chord.to_string())
     }
 

@@ -226,9 +226,9 @@ fn robot(session: &Session) -> (String, TextRole) {
         _ if !is_ready && !is_over && !mode.is_stopped() => ("ARM NOT READY", TextRole::Alarm),
         (true, _) => (mode.name(), TextRole::Alarm),
         (false, true) => ("ROBOT HELD", TextRole::Strong),
-        // After the trial the arm rests.
-        (false, false) if mode == SafetyMode::Safeguard && !is_over => (mode.name(), TextRole::Strong),
-        (false, false) if mode == SafetyMode::Reduced && !is_over => ("robot slow", TextRole::Strong),
+        // In a pause and after the trial the arm rests.
+        (false, false) if mode == SafetyMode::Safeguard && session.is_running() => (mode.name(), TextRole::Strong),
+        (false, false) if mode == SafetyMode::Reduced && session.is_running() => ("robot slow", TextRole::Strong),
         (false, false) => ("robot ok", TextRole::Text),
     };
     (words.to_string(), role)

@@ -19,9 +19,9 @@ use crate::console::text_columns::{width, wrap};
 use tomcom_core::base::text::{count, printable};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::{BenefitUnit, ConceptName};
-use tomcom_core::communication::offer::{OfferedCommunication, TAKEN_AFTER};
+use tomcom_core::communication::offer::TAKEN_AFTER;
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption, SignalReason};
-use tomcom_core::communication::{Sender, Signal};
+use tomcom_core::communication::{Sender, Signal, SignalKind};
 use tomcom_core::kitchen::{Agent, LocationId};
 use tomcom_session::admit::may_send;
 use tomcom_session::external::MindRole;
@@ -31,7 +31,7 @@ use tomcom_session::{Session, TimelineEvent, TrialPhase, offers};
 
 /// The offer as it is drawn: the open offer or, in recordings that have no offers, the best signal.
 pub(super) struct ShownOffer<'a> {
-    act: OfferedCommunication,
+    act: Signal,
     /// Benefit and net benefit.
     worth: Option<(f64, f64)>,
     /// When it opened: what it says was so then.
@@ -59,8 +59,8 @@ pub(super) fn shown<'a>(session: &'a Session, model: &ConsoleModel) -> Option<Sh
     let advice = session.advice.as_ref()?;
     let top = advice.top().map(|option| (option.benefit, option.net));
     let (act, worth) = match (&advice.best, &advice.proposal) {
-        (Some(signal), _) => (OfferedCommunication::Signal(signal.clone()), top),
-        (None, Some(proposal)) => (OfferedCommunication::Presses(proposal.presses.clone()), None),
+        (Some(signal), _) => (signal.clone(), top),
+        (None, Some(proposal)) => (Signal::Propose(proposal.presses.clone()), None),
         (None, None) => return None,
     };
     Some(ShownOffer { act, worth, opened: None, reason: advice.reason.as_ref(), words: advice.words.as_deref() })
@@ -68,19 +68,15 @@ pub(super) fn shown<'a>(session: &'a Session, model: &ConsoleModel) -> Option<Sh
 
 impl ShownOffer<'_> {
     pub(super) fn place(&self, session: &Session) -> Option<LocationId> {
-        match &self.act {
-            OfferedCommunication::Signal(signal) => signal.location(&session.kitchen),
-            OfferedCommunication::Presses(_) => None,
-        }
+        self.act.location(&session.kitchen)
     }
 
     /// Label of the offer with its keys: " enter SHOW RECIPE OF ORDER 1 [q] ".
     fn label(&self, session: &Session, model: &ConsoleModel) -> String {
-        let words = match &self.act {
-            OfferedCommunication::Signal(signal @ Signal::ShowRecipe(_)) => format!("show {}", wording::signal(signal)),
-            OfferedCommunication::Signal(signal) => wording::signal(signal),
-            OfferedCommunication::Presses(_) => return format!(" {} ", wording::offered(&self.act)),
-        };
+        let words = wording::command(&self.act);
+        if self.act.kind() == SignalKind::Proposal {
+            return format!(" {words} ");
+        }
         let own = self.place(session).and_then(|place| model.keys.mark(place));
         let own = own.map_or(String::new(), |key| format!(" [{key}]"));
         // The enter key is named only where it sends the offer: not in dialogs, replays, pauses, nor where the wizard
@@ -107,7 +103,7 @@ impl ShownOffer<'_> {
     /// Which signal on the participant's display the offered one would replace. The recommendation already counts the
     /// signal on the display as read, so that an offer is worth sending beyond it.
     fn replaces(&self, session: &Session) -> Option<String> {
-        let shown = session.shown.as_ref().filter(|_| matches!(self.act, OfferedCommunication::Signal(_)))?;
+        let shown = session.shown.as_ref().filter(|_| self.act.kind() != SignalKind::Proposal)?;
         Some(format!("replaces {}", wording::signal(&shown.signal)))
     }
 
@@ -228,7 +224,7 @@ fn closed(session: &Session, model: &ConsoleModel) -> Option<String> {
     let is_taken = last.offer.used.is_some() || model.playback.is_some() || may_send(session, Sender::Wizard).is_err();
     let key = model.keys.chord_for(&KeyAction::Accept).filter(|_| !is_taken);
     let still = key.map_or(String::new(), |key| format!("; {key} still sends it"));
-    Some(format!("{}: {}{still}", wording::offered(&last.offer.advice.what), last.reason.words()))
+    Some(format!("{}: {}{still}", wording::signal(&last.offer.advice.what), last.reason.words()))
 }
 
 /// What the line of the offer says while nothing is on offer. While the trial runs, its text changes only when a belief

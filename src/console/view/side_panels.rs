@@ -65,7 +65,11 @@ pub fn draw_robot(brush: &mut Painter, regions: &PanelAreas, session: &Session, 
 }
 
 fn holds(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session) {
-    let held = session.kitchen.content_label(session.state, session.kitchen.hands[Agent::Robot.index()]);
+    let held = session.kitchen.hands[Agent::Robot.index()];
+    let held = match session.state.content(held).is_empty() {
+        true => "nothing",
+        false => session.kitchen.content_label(session.state, held),
+    };
     let presses = count(u64::from(session.presses[Agent::Robot.index()]), "press made", "presses made");
     brush.parts(x, y, columns, &[("holds ", TextRole::Quiet), (held, TextRole::Text)]);
     let quiet = brush.style(TextRole::Quiet);
@@ -81,9 +85,7 @@ fn arm(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, now
     }
     let Some((at, sample)) = session.robot.arm.last else { return };
     if !session.is_running() || session.age(at, now).as_secs_f64() > FRESH_S {
-        let is_over = matches!(session.phase, TrialPhase::Over(_) | TrialPhase::Closed);
-        let words = if is_over { "stopped" } else { "stands" };
-        brush.parts(x, y, columns, &[(words, TextRole::Text)]);
+        brush.parts(x, y, columns, &[("stands", TextRole::Text)]);
         return;
     }
     let waits = session.robot.arm.mode == SafetyMode::Safeguard;
@@ -125,6 +127,7 @@ fn stopped(brush: &mut Painter, line: Rect, session: &Session, model: &ConsoleMo
             format!(" ARM: {} ", event_words::arm_stage(stage, "").to_uppercase())
         }
         (_, Some(force_n)) => format!(" contact, {force_n:.0} N "),
+        _ if line.height == 1 && session.robot.is_stopped_by_wizard() => " STOPPED BY THE WIZARD ".to_string(),
         _ => format!(" {} ", session.robot.safety_mode().name()),
     };
     let key = model.keys.chord_for(&KeyAction::ResumeRobot).filter(|_| session.phase != TrialPhase::Closed);
@@ -246,7 +249,9 @@ fn held(brush: &mut Painter, x: u16, y: u16, columns: u16, model: &ConsoleModel)
     let badge = brush.theme.badge(TextRole::Strong);
     let end = brush.text(x, y, columns, " HELD ", badge);
     let left = (x + columns).saturating_sub(end);
-    let words = if left > 50 { format!(" {} ", release(model)) } else { " ".to_string() };
+    let ways = [format!(" {} ", release(model)), format!(" {} ", release(model).replace(" the robot", ""))];
+    let fitting = ways.into_iter().zip([50, 30]).find(|(_, least)| left > *least);
+    let words = fitting.map_or(" ".to_string(), |(words, _)| words);
     let end = brush.parts(end, y, left, &[(&words, TextRole::Quiet)]);
     (end, (x + columns).saturating_sub(end))
 }

@@ -8,4 +8,4 @@ pub mod recommendation;
 pub mod settings;
 pub mod signal;
 
-pub use signal::{HighlightSet, Sender, Signal, available, signals, unavailable};
+pub use signal::{HighlightSet, Sender, Signal, SignalKind, available, signals, unavailable};

@@ -4,11 +4,11 @@
 //! This file has the types, the thresholds, and the memory of the present and the previous offers. The rules of offers
 //! are in `session::offers`, since they need the trial's clock and the state of the kitchen.
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::concept::{BenefitUnit, ConceptName};
 use super::recommendation::SignalReason;
-use super::signal::Signal;
+use super::signal::{Signal, SignalKind};
 use crate::base::time::SessionTime;
 
 /// Time after its opening in which an offer closes only if the wizard takes it, if its signal becomes impossible, or if
@@ -22,15 +22,29 @@ pub const UNREAD: SessionTime = SessionTime(300_000_000);
 /// Time after its close in which an offer can still be taken by a wizard who has read it and is about to press the key.
 pub const TAKEN_AFTER: SessionTime = SessionTime(1_300_000_000);
 
-/// What an offer suggests to the wizard: a signal, or presses.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// What an offer suggests, as the log has it: a proposal of presses stands apart from the signals that a wizard can send.
+#[derive(Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum OfferedCommunication {
-    /// A signal that can be sent to the participant.
+enum LoggedOffer {
     Signal(Signal),
-    /// Presses that the DEV concept proposes, by the names of their buttons. The wizard sees the proposal, but cannot
-    /// send the presses.
     Presses(Vec<String>),
+}
+
+impl LoggedOffer {
+    fn serialize<S: Serializer>(signal: &Signal, serializer: S) -> Result<S::Ok, S::Error> {
+        let logged = match signal.clone() {
+            Signal::Propose(presses) => LoggedOffer::Presses(presses),
+            signal => LoggedOffer::Signal(signal),
+        };
+        Serialize::serialize(&logged, serializer)
+    }
+
+    fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Signal, D::Error> {
+        Ok(match <LoggedOffer as Deserialize>::deserialize(deserializer)? {
+            LoggedOffer::Signal(signal) => signal,
+            LoggedOffer::Presses(presses) => Signal::Propose(presses),
+        })
+    }
 }
 
 /// The value of an offered signal: in presses, or for the concept ToM in probability.
@@ -47,9 +61,9 @@ pub struct OfferWorth {
 /// Content of an offer to the wizard, which does not change while the offer is open.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OfferedAdvice {
-    /// The offered signal, or the proposed presses.
-    #[serde(flatten)]
-    pub what: OfferedCommunication,
+    /// The offered signal. A wizard sees the presses that the concept DEV proposes, but cannot send them.
+    #[serde(flatten, with = "LoggedOffer")]
+    pub what: Signal,
     /// Sequence number of the event for which the recommendation was computed.
     pub for_seq: u64,
     /// The value of the offered signal when the offer opened; `None` for proposed presses, and where an external concept
@@ -99,12 +113,9 @@ pub struct Offer {
 }
 
 impl Offer {
-    /// The offered signal; `None` if the offer proposes presses.
+    /// The signal that the wizard can send; `None` if the offer proposes presses.
     pub fn signal(&self) -> Option<&Signal> {
-        match &self.advice.what {
-            OfferedCommunication::Signal(signal) => Some(signal),
-            OfferedCommunication::Presses(_) => None,
-        }
+        Some(&self.advice.what).filter(|signal| signal.kind() != SignalKind::Proposal)
     }
 }
 

@@ -21,7 +21,55 @@ pub enum Signal {
     Propose(Vec<String>),
 }
 
+/// The kind of a signal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum SignalKind {
+    /// Shows an order's recipe.
+    Recipe,
+    /// Highlights a location.
+    Highlight,
+    /// Proposes presses.
+    Proposal,
+}
+
+impl SignalKind {
+    /// Name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            SignalKind::Recipe => "recipe",
+            SignalKind::Highlight => "highlight",
+            SignalKind::Proposal => "proposal",
+        }
+    }
+
+    /// Name in the log.
+    pub fn tag(self) -> &'static str {
+        match self {
+            SignalKind::Recipe => "show_recipe",
+            SignalKind::Highlight => "highlight",
+            SignalKind::Proposal => "propose",
+        }
+    }
+}
+
 impl Signal {
+    /// The signal's kind.
+    pub fn kind(&self) -> SignalKind {
+        match self {
+            Signal::ShowRecipe(_) => SignalKind::Recipe,
+            Signal::Highlight(_) => SignalKind::Highlight,
+            Signal::Propose(_) => SignalKind::Proposal,
+        }
+    }
+
+    /// The things that the signal names: one location, or the buttons of a proposal.
+    pub fn names(&self) -> &[String] {
+        match self {
+            Signal::ShowRecipe(name) | Signal::Highlight(name) => std::slice::from_ref(name),
+            Signal::Propose(presses) => presses,
+        }
+    }
+
     /// Name of the location that the signal is about; `None` for proposed presses.
     pub fn target(&self) -> Option<&str> {
         match self {
@@ -33,14 +81,6 @@ impl Signal {
     /// The location that the signal is about; `None` for proposed presses, and if the kitchen has no such location.
     pub fn location(&self, kitchen: &Kitchen) -> Option<LocationId> {
         kitchen.location_named(self.target()?)
-    }
-
-    /// Number of things that the signal tells: the number of presses of a proposal, one for any other signal.
-    pub fn contents(&self) -> usize {
-        match self {
-            Signal::ShowRecipe(_) | Signal::Highlight(_) => 1,
-            Signal::Propose(presses) => presses.len(),
-        }
     }
 }
 

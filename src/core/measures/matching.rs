@@ -18,29 +18,26 @@ use serde::{Deserialize, Serialize};
 
 use super::median;
 use crate::base::time::SessionTime;
-use crate::kitchen::LocationId;
+use crate::communication::signal::{Signal, SignalKind};
+use crate::kitchen::{Kitchen, LocationId};
 
 /// Default window within which two communications can match, in presses of the human.
 pub const WINDOW: u32 = 3;
-
-/// Kind of a communication to the participant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub enum CommunicationKind {
-    /// A signal that shows an order's recipe.
-    Recipe,
-    /// A signal that highlights a location.
-    Highlight,
-    /// A proposal of presses after an error (not a signal).
-    Proposal,
-}
 
 /// Content of a communication, as far as the matching compares it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct ComparedContent {
     /// The kind of the communication.
-    pub kind: CommunicationKind,
+    pub kind: SignalKind,
     /// Location that the communication is about; `None` for a communication without a location.
     pub target: Option<LocationId>,
+}
+
+impl ComparedContent {
+    /// The content of a signal.
+    pub fn of_signal(kitchen: &Kitchen, signal: &Signal) -> ComparedContent {
+        ComparedContent { kind: signal.kind(), target: signal.location(kitchen) }
+    }
 }
 
 /// A communication of wizard or assistant, with its time.

@@ -274,11 +274,7 @@ pub(super) fn session_signals(spec: &SessionSpec, kitchen: &Kitchen) -> Vec<Sign
 }
 
 fn signal_labels(spec: &SessionSpec, kitchen: &Kitchen) -> Vec<String> {
-    let label = |signal: Signal| match signal {
-        Signal::ShowRecipe(order) => format!("show_recipe/{order}"),
-        Signal::Highlight(location) => format!("highlight/{location}"),
-        Signal::Propose(presses) => format!("propose/{}", presses.join("/")),
-    };
+    let label = |signal: Signal| format!("{}/{}", signal.kind().tag(), signal.names().join("/"));
     session_signals(spec, kitchen).into_iter().map(label).collect()
 }
 

@@ -1,7 +1,7 @@
 //! Entities of beliefs: curves and lanes of what is believed wrong, and the page that tells in words what was pressed,
 //! shown and believed.
 
-use super::entity_content::{self, CURVES, EntityData, EntityUpdate, MarkShape, SeriesStyle, slug};
+use super::entity_content::{self, CURVES, EntityData, EntityUpdate, MarkShape, SceneLogLevel, SeriesStyle, slug};
 use super::happenings::JudgedPressShown;
 use super::{SceneInputs, moment_on_clock};
 use tomcom_core::base::time::SessionTime;
@@ -228,6 +228,12 @@ impl BeliefScene {
             if held.map(|held| held.began) == *drawn {
                 continue;
             }
+            let over = drawn.and_then(|_| follower.false_beliefs.before(aspect, session.time));
+            rows.extend(over.filter(|over| over.lasts(session)).map(|over| {
+                let text = format!("false belief: {}", over.whole(session));
+                let (level, colour) = (SceneLogLevel::Info, entity_content::FALSE);
+                EntityUpdate::new("human/false_beliefs", EntityData::Words { level, text, colour })
+            }));
             *drawn = held.map(|held| held.began);
             let words = held.map_or_else(String::new, |held| held.told(kitchen));
             let data = EntityData::State(words, entity_content::FALSE);

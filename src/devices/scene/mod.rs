@@ -174,13 +174,13 @@ impl SessionScene {
         }
         rows.extend(self.signals.follow(session, inputs.follower));
         rows.extend(new.iter().map(|entry| happenings::entry(session, entry, pressed, inputs.follower)));
-        rows.extend(happenings::in_order(&rows));
         rows.extend(pressed.filter(|pressed| pressed.press.verdict.error).map(|_| happenings::mark()));
         rows.extend(self.arm.iter_mut().flat_map(|arm| arm.follow(session, stamped, change)));
         rows.extend(self.looks.follow(session, &stamped.event));
         self.belief.gaze = self.looks.words(session);
         self.belief.robot = arm::robot_does(session);
         rows.extend(self.belief.follow(session, stamped, new, pressed, inputs));
+        rows.extend(happenings::in_order(&rows));
         self.told = session.timeline.len();
         rows
     }

@@ -24,8 +24,9 @@ use tomcom_arm::real_arm::ArmOrder;
 use tomcom_arm::worker::RobotTaskExecutor;
 use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::offer::{OfferedAdvice, OfferedCommunication};
+use tomcom_core::communication::offer::OfferedAdvice;
 use tomcom_core::communication::recommendation::SignalReason;
+use tomcom_core::communication::SignalKind;
 use tomcom_core::kitchen::{Agent, AspectId, ButtonId, Kitchen, KitchenChange, Press};
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::robot::{ArmStage, RobotEvent};
@@ -225,10 +226,10 @@ impl SessionEngine {
             // may be about the other order. An external concept has reasons of its own.
             if let Event::OfferOpened(advice) = &mut event
                 && advice.words.is_none()
-                && let (None, OfferedCommunication::Signal(signal)) = (&advice.reason, &advice.what)
+                && advice.reason.is_none()
             {
                 let session = &self.follower.session;
-                advice.reason = SignalReason::for_signal(&session.kitchen, session.state, self.belief(), signal);
+                advice.reason = SignalReason::for_signal(&session.kitchen, session.state, self.belief(), &advice.what);
             }
             self.record_own(now, event);
         }
@@ -256,7 +257,7 @@ impl SessionEngine {
                     wizard.on_signal(now, location, state);
                 }
             }
-            Event::OfferOpened(OfferedAdvice { what: OfferedCommunication::Signal(_), visible: true, .. }) => {
+            Event::OfferOpened(OfferedAdvice { what, visible: true, .. }) if what.kind() != SignalKind::Proposal => {
                 wizard.on_offer(now, stamped.seq);
             }
             _ => {

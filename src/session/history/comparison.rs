@@ -13,7 +13,7 @@ use tomcom_core::communication::concept::{BenefitUnit, ConceptName};
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption};
 use tomcom_core::kitchen::{AspectId, Kitchen, LocationId, LocationKind, OrderContent, State};
 use tomcom_core::measures::matching::{
-    CommunicationEvent, CommunicationKind, ComparedContent, MatchCounts, MatchCriterion, Similarity, matched,
+    CommunicationEvent, MatchCounts, MatchCriterion, Similarity, matched,
 };
 use tomcom_core::measures::sequences::FALSE_BELOW;
 
@@ -34,55 +34,13 @@ pub struct CommunicationContext {
     pub screen: Option<WizardScreenContent>,
 }
 
-#[derive(Clone, Debug, PartialEq)]
-pub enum CommunicationContent {
-    Signal(Signal),
-    /// Names of the buttons.
-    Proposal(Vec<String>),
-}
-
-impl CommunicationContent {
-    pub fn from_signal(signal: &Signal) -> CommunicationContent {
-        match signal {
-            Signal::Propose(presses) => CommunicationContent::Proposal(presses.clone()),
-            signal => CommunicationContent::Signal(signal.clone()),
-        }
-    }
-
-    /// In the form that the matching compares.
-    pub fn content(&self, kitchen: &Kitchen) -> ComparedContent {
-        let kind = match self {
-            CommunicationContent::Signal(Signal::ShowRecipe(_)) => CommunicationKind::Recipe,
-            CommunicationContent::Signal(Signal::Highlight(_)) => CommunicationKind::Highlight,
-            CommunicationContent::Signal(Signal::Propose(_)) | CommunicationContent::Proposal(_) => {
-                CommunicationKind::Proposal
-            }
-        };
-        ComparedContent { kind, target: self.target(kitchen) }
-    }
-
-    fn target(&self, kitchen: &Kitchen) -> Option<LocationId> {
-        match self {
-            CommunicationContent::Signal(signal) => signal.location(kitchen),
-            CommunicationContent::Proposal(_) => None,
-        }
-    }
-
-    pub fn words(&self) -> String {
-        match self {
-            CommunicationContent::Signal(signal) => wording::signal(signal),
-            CommunicationContent::Proposal(presses) => wording::proposal(presses),
-        }
-    }
-}
-
 /// Of the wizard or of an assistant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Communication {
     /// In the form that the matching compares.
     pub said: CommunicationEvent,
     pub time: SessionTime,
-    pub what: CommunicationContent,
+    pub what: Signal,
     /// When the assistants were last asked before it.
     pub known: Option<Arc<CommunicationContext>>,
 }
@@ -180,7 +138,7 @@ impl SenderComparison {
     /// "4:32  only tom-com: recipe of order 1".
     pub fn headline(&self, difference: &UnmatchedCommunication) -> String {
         let (spoken, by) = (self.spoken(difference), &self.lanes[difference.lane].name);
-        let (clock, words) = (spoken.said.clock, spoken.what.words());
+        let (clock, words) = (spoken.said.clock, wording::signal(&spoken.what));
         match self.lanes.len() {
             0..=2 => format!("{clock}  only {by}: {words}"),
             _ => format!("{clock}  {by}, not {}: {words}", self.lanes[difference.not].name),
@@ -196,7 +154,7 @@ impl SenderComparison {
         let lacks = match other.spoken.iter().min_by_key(apart) {
             Some(near) => {
                 let (words, clock, presses) =
-                    (near.what.words(), near.said.clock, count(apart(&near), "press", "presses"));
+                    (wording::signal(&near.what), near.said.clock, count(apart(&near), "press", "presses"));
                 format!(
                     "after press {press}; not sent by {name}, whose nearest signal is {words} at {clock}, {presses} away"
                 )
@@ -225,7 +183,7 @@ impl SenderComparison {
 
 fn thought(kitchen: &Kitchen, advice: &Recommendation, unit: BenefitUnit) -> String {
     if let Some(proposal) = &advice.proposal {
-        return CommunicationContent::Proposal(proposal.presses.clone()).words();
+        return wording::proposal(&proposal.presses);
     }
     let option = |option: &SignalOption| {
         let (signal, SignalOption { benefit, standard_error, net, .. }) = (wording::signal(&option.signal), option);

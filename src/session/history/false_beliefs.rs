@@ -1,9 +1,10 @@
 //! The false beliefs of the estimate as intervals of time: the one source for replays, the review and exports.
 
 use crate::history::wording;
-use crate::{Session, TimestampedEvent, TrialPhase};
+use crate::{Event, Session, TimestampedEvent, TrialPhase};
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::{AspectId, Kitchen};
+use tomcom_core::communication::recommendation::aspects_told;
+use tomcom_core::kitchen::{Agent, AspectId, Kitchen};
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::mind::dirichlet::DirichletBelief;
 
@@ -14,6 +15,37 @@ const EVERY_NS: u64 = 200_000_000;
 /// Least duration of a false belief that lasts, in seconds.
 const LEAST_S: f64 = 1.0;
 
+/// What ended a false belief.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FalseBeliefEnd {
+    /// The true value became another one: the one that was believed, or one that is known.
+    KitchenChange,
+    /// A signal about the state aspect was on the participant's display.
+    Signal,
+    Look,
+    /// A press of the human.
+    Press,
+    AnotherValue,
+    TrialEnd,
+    /// Evidence of another kind.
+    OtherEvidence,
+}
+
+impl FalseBeliefEnd {
+    /// "until a look".
+    pub fn words(self) -> &'static str {
+        match self {
+            FalseBeliefEnd::KitchenChange => "until the kitchen changed",
+            FalseBeliefEnd::Signal => "until a signal told it",
+            FalseBeliefEnd::Look => "until a look",
+            FalseBeliefEnd::Press => "until a press of the human",
+            FalseBeliefEnd::AnotherValue => "until another wrong value was believed",
+            FalseBeliefEnd::TrialEnd => "until the trial ended",
+            FalseBeliefEnd::OtherEvidence => "until other evidence",
+        }
+    }
+}
+
 /// One false belief about one state aspect, by the estimate. Another truth, or another wrong value that is believed most, is
 /// another false belief.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -23,6 +55,8 @@ pub struct EstimatedFalseBelief {
     pub began: SessionTime,
     /// Session time; `None` while it is held.
     pub ended: Option<SessionTime>,
+    /// `None` while it is held.
+    pub end: Option<FalseBeliefEnd>,
     /// Index of the wrong value that is most probably believed.
     pub thinks: usize,
     /// Index of the true value.
@@ -46,6 +80,13 @@ impl EstimatedFalseBelief {
     pub fn told(&self, kitchen: &Kitchen) -> String {
         let (thinks, truth) = wording::contrast(kitchen, self.aspect, self.thinks, self.truth);
         format!("thinks {thinks}, {truth}")
+    }
+
+    /// The same, with the duration and what ended it: "cooking pot: thinks empty, is nori; for 2.3 s, until a look".
+    pub fn whole(&self, session: &Session) -> String {
+        let (told, lasted_s) = (self.told(&session.kitchen), self.lasted_s(session));
+        let end = self.end.map_or(String::new(), |end| format!(", {}", end.words()));
+        format!("{}: {told}; for {lasted_s:.1} s{end}", self.about)
     }
 }
 
@@ -85,11 +126,17 @@ impl EstimatedFalseBeliefs {
             }
             if let Some(open) = open {
                 open.ended = Some(now);
+                open.end = Some(match held {
+                    _ if !is_trial => FalseBeliefEnd::TrialEnd,
+                    _ if open.truth != kitchen.true_value(state, aspect) => FalseBeliefEnd::KitchenChange,
+                    Some(_) => FalseBeliefEnd::AnotherValue,
+                    None => corrected_by(session, aspect, &stamped.event),
+                });
             }
             if let Some((thinks, truth)) = held {
                 self.last[index] = Some(self.all.len());
                 let about = wording::aspect(kitchen, state, aspect);
-                self.all.push(EstimatedFalseBelief { aspect, began: now, ended: None, thinks, truth, about });
+                self.all.push(EstimatedFalseBelief { aspect, began: now, ended: None, end: None, thinks, truth, about });
             }
         }
     }
@@ -127,6 +174,22 @@ impl EstimatedFalseBeliefs {
         self.last(aspect, |began| began <= time, |ended| ended < time)
     }
 
+    /// What was believed wrong just before a press, for a second at least, in words: the two false beliefs that were held
+    /// longest.
+    pub fn told_before(&self, session: &Session, press: SessionTime) -> Option<String> {
+        let kitchen = &session.kitchen;
+        let aspects = (0..kitchen.aspects.len()).map(|index| AspectId(index as u8));
+        let mut held: Vec<&EstimatedFalseBelief> = aspects.filter_map(|aspect| self.before(aspect, press)).collect();
+        held.retain(|one| session.age(one.began, press).as_secs_f64() >= LEAST_S);
+        held.sort_by_key(|one| one.began);
+        let told = held.iter().take(2).map(|one| {
+            let since = session.trial_clock_at(one.began);
+            format!("{} {} since {since}", one.about, one.told(kitchen))
+        });
+        let told = told.collect::<Vec<_>>().join(" and ");
+        (!told.is_empty()).then(|| format!("by the estimate, {told}"))
+    }
+
     /// When the belief about an aspect that is false at a time became right; `None` if it has not.
     pub fn corrected(&self, aspect: AspectId, time: SessionTime) -> Option<SessionTime> {
         let mut until = time;
@@ -138,5 +201,18 @@ impl EstimatedFalseBeliefs {
             until = one.ended?;
         }
         Some(until)
+    }
+}
+
+/// What corrected a belief about an aspect whose true value stayed, at this event.
+fn corrected_by(session: &Session, aspect: AspectId, event: &Event) -> FalseBeliefEnd {
+    let is_told = session.shown.as_ref().is_some_and(|shown| {
+        aspects_told(&session.kitchen, session.state, &shown.signal).contains(&aspect)
+    });
+    match event {
+        Event::Press { agent: Agent::Human, .. } => FalseBeliefEnd::Press,
+        _ if is_told => FalseBeliefEnd::Signal,
+        Event::Gaze(_) => FalseBeliefEnd::Look,
+        _ => FalseBeliefEnd::OtherEvidence,
     }
 }

@@ -4,7 +4,6 @@ use crate::event::TrialEndReason;
 use crate::plan::PhaseSpec;
 use crate::probes::ProbeSubject;
 use crate::{Session, TrialPhase};
-use tomcom_core::communication::offer::OfferedCommunication;
 use tomcom_core::communication::recommendation::SignalReason;
 use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::gaze::quality::DroppedInputCounts;
@@ -145,10 +144,11 @@ pub fn proposal(presses: &[String]) -> String {
     format!("press {}", presses.join(", then "))
 }
 
-pub fn offered(what: &OfferedCommunication) -> String {
-    match what {
-        OfferedCommunication::Signal(told) => signal(told),
-        OfferedCommunication::Presses(presses) => proposal(presses),
+/// What a wizard does with a signal: "show recipe of order 1".
+pub fn command(told: &Signal) -> String {
+    match told {
+        Signal::ShowRecipe(_) => format!("show {}", signal(told)),
+        Signal::Highlight(_) | Signal::Propose(_) => signal(told),
     }
 }
 

@@ -16,6 +16,7 @@ use tomcom_session::apply::ApplyError;
 use tomcom_session::event::WizardScreenContent;
 use tomcom_session::history::belief_track::AspectBeliefSnapshot;
 use tomcom_session::history::comparison::{Communication, SenderComparison, UnmatchedCommunication};
+use tomcom_session::history::wording;
 use tomcom_session::settings::Condition;
 use tomcom_session::watcher::{SenderComparisonFollower, SenderComparisonSettings};
 use tomcom_session::wizard_log::{self, WizardSummary};
@@ -176,7 +177,7 @@ impl RecordingComparison {
 impl ListedCommunication {
     fn from_communication(spoken: &Communication) -> ListedCommunication {
         let (press, clock_s) = (spoken.said.press, spoken.said.clock.as_secs_f64());
-        ListedCommunication { press, clock_s, says: spoken.what.words() }
+        ListedCommunication { press, clock_s, says: wording::signal(&spoken.what) }
     }
 }
 

@@ -28,7 +28,7 @@ use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, AspectId, Kitchen, KitchenChange};
 use tomcom_core::measures::attribution::{ErrorAttributor, ErrorCause};
-use tomcom_core::measures::matching::{CommunicationEvent, WINDOW};
+use tomcom_core::measures::matching::{CommunicationEvent, ComparedContent, WINDOW};
 use tomcom_core::measures::raters::BeliefSource;
 use tomcom_core::measures::sequences::{
     BeliefErrorCounts, ErrorSequence, FalseBeliefEpisode, sequences, sequences_any_aspect,
@@ -39,7 +39,6 @@ use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_session::apply::ApplyError;
 use tomcom_session::files::file_error::FileResult;
 use tomcom_session::follower::SessionFollower;
-use tomcom_session::history::comparison::CommunicationContent;
 use tomcom_session::log::{LogReader, rater_codes};
 use tomcom_session::plan::{AnswerFormat, Questionnaire, QuestionnaireItem, QuestionnaireItemKind, ScoreRule};
 use tomcom_session::protocol::{ProtocolEvent, StudyProtocolState};
@@ -270,7 +269,7 @@ fn lanes(pass: &mut ReplayPass) -> Vec<(String, Vec<CommunicationEvent>)> {
 
 fn contents(entry: &TimelineEntry) -> u64 {
     match &entry.what {
-        TimelineEvent::Noted(Event::SignalShown { signal, .. }) => signal.contents() as u64,
+        TimelineEvent::Noted(Event::SignalShown { signal, .. }) => signal.names().len() as u64,
         _ => 0,
     }
 }
@@ -282,7 +281,7 @@ fn sent(session: &Session) -> Vec<CommunicationEvent> {
         match &entry.what {
             TimelineEvent::Press { agent: Agent::Human, .. } => press += 1,
             TimelineEvent::Noted(Event::SignalShown { signal, .. }) => {
-                let content = CommunicationContent::from_signal(signal).content(&session.kitchen);
+                let content = ComparedContent::of_signal(&session.kitchen, signal);
                 sent.push(CommunicationEvent { press, clock: clock_at(session, entry.time), content });
             }
             _ => {}

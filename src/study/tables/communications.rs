@@ -8,9 +8,9 @@ use crate::trial_statistics::{TrialDetails, TrialStatistics};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::concept::ConceptName;
-use tomcom_core::communication::offer::{OfferCloseReason, OfferKeyKind, OfferedCommunication};
+use tomcom_core::communication::offer::{OfferCloseReason, OfferKeyKind};
 use tomcom_core::kitchen::{Kitchen, LocationId};
-use tomcom_core::measures::matching::{CommunicationEvent, CommunicationKind};
+use tomcom_core::measures::matching::CommunicationEvent;
 use tomcom_core::mind::{AspectBelief, AspectEstimate, rounded};
 
 #[derive(Clone, Copy, Debug)]
@@ -25,14 +25,6 @@ pub struct CommunicationRow<'a> {
     pub matched: Option<bool>,
 }
 
-fn kind_name(kind: CommunicationKind) -> &'static str {
-    match kind {
-        CommunicationKind::Recipe => "recipe",
-        CommunicationKind::Highlight => "highlight",
-        CommunicationKind::Proposal => "proposal",
-    }
-}
-
 impl CsvRow for CommunicationRow<'_> {
     const TABLE: CsvTable = CsvTable::Communications;
 
@@ -42,7 +34,7 @@ impl CsvRow for CommunicationRow<'_> {
             "lane", "", "sender (wizard, assistant), or concept of a hypothetical signal (tom-com)" => row.lane;
             "time_s", "s", "time on the trial's clock" => rounded(row.sent.clock.as_secs_f64());
             "press", "presses", "number of human presses before it" => row.sent.press;
-            "kind", "", "recipe, highlight or proposal" => kind_name(row.sent.content.kind);
+            "kind", "", "recipe, highlight or proposal" => row.sent.content.kind.name();
             "target", "", "location that the communication is about"
                 => row.sent.content.target.map(|location| &row.kitchen.location(location).name);
             "matched", "", "whether the other lane has the same signal within the window; empty: no other lane"
@@ -59,23 +51,8 @@ pub struct OfferRow<'a> {
 }
 
 impl OfferRow<'_> {
-    fn act(&self) -> &OfferedCommunication {
+    fn signal(&self) -> &Signal {
         &self.timed.offer.advice.what
-    }
-
-    fn target(&self) -> String {
-        match self.act() {
-            OfferedCommunication::Signal(signal) => signal.target().unwrap_or_default().to_string(),
-            OfferedCommunication::Presses(presses) => presses.join(" "),
-        }
-    }
-}
-
-fn offer_kind_name(what: &OfferedCommunication) -> &'static str {
-    match what {
-        OfferedCommunication::Signal(Signal::ShowRecipe(_)) => "recipe",
-        OfferedCommunication::Signal(Signal::Highlight(_)) => "highlight",
-        OfferedCommunication::Signal(Signal::Propose(_)) | OfferedCommunication::Presses(_) => "proposal",
     }
 }
 
@@ -94,8 +71,8 @@ impl CsvRow for OfferRow<'_> {
             "recording", "", "as in trials" => row.recording;
             "offer", "", "sequence number of offer_opened in the log" => row.timed.offer.seq;
             "time_s", "s", "time of its opening on the trial's clock" => rounded(row.timed.opened_s);
-            "kind", "", "recipe, highlight or proposal" => offer_kind_name(row.act());
-            "target", "", "location of the signal, or the proposed presses" => row.target();
+            "kind", "", "recipe, highlight or proposal" => row.signal().kind().name();
+            "target", "", "location of the signal, or the proposed presses" => row.signal().names().join(" ");
             "benefit", "presses; for tom a probability", "expected saving at the opening; for tom the belief deviation"
                 => row.timed.offer.advice.worth.map(|worth| worth.benefit);
             "net", "presses; for tom a probability", "benefit minus the cost of communication or the threshold"

@@ -2,9 +2,10 @@
 
 use rand::RngExt;
 use tomcom_core::base::rng::stream;
+use tomcom_core::communication::SignalKind;
 use tomcom_core::kitchen::LocationId;
 use tomcom_core::measures::matching::{
-    CommunicationEvent, CommunicationKind, ComparedContent, MatchCounts, MatchCriterion, Similarity, matched,
+    CommunicationEvent, ComparedContent, MatchCounts, MatchCriterion, Similarity, matched,
 };
 
 use super::at;
@@ -16,11 +17,11 @@ fn lane(text: &str) -> Vec<CommunicationEvent> {
         let (press, letter) = item.split_once(':').expect("press:content");
         let press: u32 = press.parse().expect("a number");
         let (kind, target) = match letter {
-            "q" => (CommunicationKind::Recipe, Some(0)),
-            "w" => (CommunicationKind::Recipe, Some(1)),
-            "a" => (CommunicationKind::Highlight, Some(2)),
-            "b" => (CommunicationKind::Highlight, Some(3)),
-            _ => (CommunicationKind::Proposal, None),
+            "q" => (SignalKind::Recipe, Some(0)),
+            "w" => (SignalKind::Recipe, Some(1)),
+            "a" => (SignalKind::Highlight, Some(2)),
+            "b" => (SignalKind::Highlight, Some(3)),
+            _ => (SignalKind::Proposal, None),
         };
         CommunicationEvent {
             press,

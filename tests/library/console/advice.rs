@@ -14,11 +14,12 @@ use tomcom::console::panels::screen;
 use tomcom::console::view::theme::{TerminalBackground, TextRole, Theme};
 use tomcom_core::communication::offer::OfferCloseReason;
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption, SignalReason};
+use tomcom_core::communication::SignalKind;
 use tomcom_core::measures::matching::CommunicationEvent;
 use tomcom_session::history::belief_track;
 use tomcom_session::history::belief_track::BeliefSnapshot;
 use tomcom_session::history::comparison::{
-    Communication, CommunicationContent, CommunicationContext, SenderCommunications, SenderComparison,
+    Communication, CommunicationContext, SenderCommunications, SenderComparison,
 };
 
 use super::{SIZES, Stage, input, panels, type_in};
@@ -447,11 +448,11 @@ fn compared(assistants: usize) -> Stage {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.model.keys = stage.model.keys.clone().with_comparison();
     let kitchen = stage.session.kitchen.clone();
-    let recipe = |order: &str| CommunicationContent::Signal(Signal::ShowRecipe(order.to_string()));
-    let highlight = |place: &str| CommunicationContent::Signal(Signal::Highlight(place.to_string()));
+    let recipe = |order: &str| Signal::ShowRecipe(order.to_string());
+    let highlight = |place: &str| Signal::Highlight(place.to_string());
     let held = BeliefSnapshot::new(&kitchen, stage.session.state, &stage.belief, stage.model.now, false).held;
-    let said = |press: u32, seconds: f64, what: CommunicationContent| {
-        let best = if let CommunicationContent::Signal(signal) = &what { Some(signal.clone()) } else { None };
+    let said = |press: u32, seconds: f64, what: Signal| {
+        let best = Some(what.clone()).filter(|signal| signal.kind() != SignalKind::Proposal);
         let option = |signal: &Signal| SignalOption {
             signal: signal.clone(),
             benefit: 4.2,
@@ -474,7 +475,7 @@ fn compared(assistants: usize) -> Stage {
         said(5, 10.6, highlight("cutting_board")),
         said(9, 21.1, recipe("order_1")),
     ];
-    let proposed = CommunicationContent::Proposal(vec!["take_nori".to_string(), "assembly_board".to_string()]);
+    let proposed = Signal::Propose(vec!["take_nori".to_string(), "assembly_board".to_string()]);
     let mut lanes = vec![
         lane("wizard", None, sent),
         lane("tom-com", Some(ConceptName::TomCom), planned),

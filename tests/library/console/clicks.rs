@@ -11,7 +11,7 @@ use tomcom::console::lists::{PickerKind, ReasonFor};
 use tomcom::console::view::click_targets;
 use tomcom::console::view::regions::PanelAreas;
 use tomcom::console::{ConsoleCommand, ConsoleMessage, KeyBindings, KeyFileBindings, mouse, update};
-use tomcom_core::communication::offer::{OfferedAdvice, OfferedCommunication};
+use tomcom_core::communication::offer::OfferedAdvice;
 use tomcom_session::replay::ReplayLandmark;
 
 use super::{SIZES, Stage, input, panels};
@@ -81,7 +81,7 @@ fn the_question_of_a_click_gives_way_to_a_newer_offer_that_the_wizard_sees() {
             stage.click("[a]");
             assert!(stage.asks_to_send(), "clock ahead by {ahead_s} s");
             stage.session.spec.console.visibility = shows;
-            let what = OfferedCommunication::Signal(highlight("counter"));
+            let what = highlight("counter");
             let advice = OfferedAdvice { what, for_seq: 17, worth: None, reason: None, words: None, visible };
             stage.at(23.5, Event::OfferOpened(advice));
             ahead(&mut stage);

@@ -1,7 +1,7 @@
 //! The report: participants, robot, methods, raters.
 
 use tomcom_core::communication::offer::{
-    Offer, OfferCloseReason, OfferKeyKind, OfferUse, OfferedAdvice, OfferedCommunication,
+    Offer, OfferCloseReason, OfferKeyKind, OfferUse, OfferedAdvice,
 };
 use tomcom_core::measures::raters::{BeliefSource, ErrorCauseCode, RaterCodes, RaterConsensus};
 use tomcom_core::robot::{AbortReason, SafetyMode};
@@ -218,7 +218,7 @@ fn what_was_offered_stands_beside_what_the_wizard_did() {
     let offer = |seq: u64, stood_s: f64, how: Option<OfferKeyKind>, reason| {
         let opened = at(10.0 * seq as f64);
         let sent = how.map(|_| opened + at(stood_s));
-        let what = OfferedCommunication::Signal(Signal::ShowRecipe("order_1".to_string()));
+        let what = Signal::ShowRecipe("order_1".to_string());
         let advice = OfferedAdvice { what, for_seq: 1, worth: None, reason: None, words: None, visible: true };
         TimedOffer {
             offer: Offer { seq, opened, used: how.zip(sent).map(|(how, at)| OfferUse { how, at }), advice },

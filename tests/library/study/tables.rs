@@ -1,6 +1,7 @@
 //! The study's tables: columns that are declared once, the rows and the dictionary that follow, and the files they go to.
 
-use tomcom_core::measures::matching::{CommunicationEvent, CommunicationKind, ComparedContent};
+use tomcom_core::communication::SignalKind;
+use tomcom_core::measures::matching::{CommunicationEvent, ComparedContent};
 use tomcom_session::plan::QuestionnaireItemKind;
 use tomcom_session::protocol::StudyPhase;
 use tomcom_session::questionnaire::AnswerValue;
@@ -303,7 +304,7 @@ fn tables_are_written_as_they_are_declared() {
 fn analysed_recordings_are_kept_in_files_until_all_are_read() {
     let folder = folder("kept");
     let RecordingAnalysis { trial, facts, .. } = analysis("kept-recording");
-    let content = ComparedContent { kind: CommunicationKind::Highlight, target: Some(LocationId(3)) };
+    let content = ComparedContent { kind: SignalKind::Highlight, target: Some(LocationId(3)) };
     let sent = CommunicationEvent { press: 7, clock: SessionTime(1_234_567_891), content };
     let count = PreventionCounts { presses: 90, lead_ms: 1_001, harmless: None, ..PreventionCounts::default() };
     let details = TrialDetails {

@@ -7,7 +7,6 @@ use crate::analysis::bids::{YES_NO, seconds};
 use crate::column::{Levels, TableColumn, columns};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
-use tomcom_core::communication::offer::OfferedCommunication;
 use tomcom_core::gaze::device_clock::StampFault;
 use tomcom_session::button_box::ButtonBoxEvent;
 use tomcom_session::event::{Event, MEANINGS};
@@ -241,10 +240,7 @@ impl EventCells {
                 self.what = if offer.visible { "visible" } else { "hidden" }.to_string();
                 (self.refers_to, self.value) = (Some(offer.for_seq), offer.worth.map(|worth| worth.net));
                 self.item = offer.reason.as_ref().map(|reason| reason.aspect.clone()).unwrap_or_default();
-                match &offer.what {
-                    OfferedCommunication::Signal(signal) => self.take_signal(signal),
-                    OfferedCommunication::Presses(presses) => self.button = presses.join(", "),
-                }
+                self.take_signal(&offer.what);
             }
 
             _ => {}
@@ -264,12 +260,7 @@ impl EventCells {
         if let Signal::Propose(presses) = signal {
             self.button = presses.join(", ");
         }
-        self.signal = match signal {
-            Signal::ShowRecipe(_) => "show_recipe",
-            Signal::Highlight(_) => "highlight",
-            Signal::Propose(_) => "propose",
-        }
-        .to_string();
+        self.signal = signal.kind().tag().to_string();
     }
 
     fn take_protocol(&mut self, event: &ProtocolEvent, is_words: bool) {

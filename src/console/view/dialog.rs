@@ -18,8 +18,10 @@ use crate::console::preflight::{OVERRIDE, all_ok, checks};
 use crate::console::text_columns::{width, wrap};
 use crate::console::text_input::TextInput;
 use tomcom_core::base::text::count;
+use tomcom_core::base::time::SessionTime;
+use tomcom_session::history::event_words;
 use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict};
-use tomcom_session::{Session, TrialPhase};
+use tomcom_session::{Session, TimelineEvent, TrialPhase};
 
 /// Draws the open dialog, if there is one.
 pub fn draw(brush: &mut Painter, screen: Rect, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
@@ -219,12 +221,25 @@ pub fn note(brush: &mut Painter, screen: Rect, session: &Session, text: &TextInp
                 more => format!(" {} after it.", count(more, "further mark", "further marks")),
             };
             let clock = session.trial_clock_at(*at);
-            (format!("The time mark at {clock}: its words"), format!("enter alone leaves it without words.{more} "))
+            let around = presses_around(session, *at);
+            let says = format!("{around}enter alone leaves it without words.{more} ");
+            (format!("The time mark at {clock}: its words"), says)
         }
     };
     // The title of a mark has no room for it beside; below it is said anyhow.
     let remark = if marks.is_empty() { remark } else { "" };
     input_line(brush, screen, text, (&title, remark), &(marks + says));
+}
+
+/// The two presses before a time mark and the one after it, in words.
+fn presses_around(session: &Session, mark: SessionTime) -> String {
+    let presses = session.timeline.iter().filter(|entry| matches!(entry.what, TimelineEvent::Press { .. }));
+    let (before, after): (Vec<_>, Vec<_>) = presses.partition(|entry| entry.time <= mark);
+    let told = before[before.len().saturating_sub(2)..].iter().chain(after.first()).map(|entry| {
+        let (who, what) = event_words::happening(&session.kitchen, &entry.what);
+        format!("{} {who} {what}. ", session.trial_clock_at(entry.time))
+    });
+    told.collect()
 }
 
 /// Draws the text input of a questionnaire answer below its item.

@@ -8,7 +8,7 @@ use crossterm::event::KeyCode::{
 use super::chord::KeyChord;
 use super::console_model::{ComparisonAction, ReplayAction};
 use super::key_action::{KeyAction, KeyBinding, KeyFileTable, KeyLayer, ManualAction, RaterAction, ViewAction};
-use tomcom_core::communication::{self, HighlightSet, Signal};
+use tomcom_core::communication::{self, HighlightSet};
 use tomcom_core::kitchen::{Agent, ButtonId, Kitchen, LocationId};
 use tomcom_core::measures::raters::ErrorCauseKind;
 use tomcom_session::history::wording;

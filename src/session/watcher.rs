@@ -16,9 +16,7 @@ use crate::apply::ApplyError;
 use crate::event::WizardScreenContent;
 use crate::follower::SessionFollower;
 use crate::history::belief_track::BeliefSnapshot;
-use crate::history::comparison::{
-    Communication, CommunicationContext, SenderCommunications, SenderComparison,
-};
+use crate::history::comparison::{Communication, CommunicationContext, SenderCommunications, SenderComparison};
 use crate::settings::Condition;
 use crate::{AppliedEvent, Event, Session, SessionSpec, TimestampedEvent};
 use tomcom_core::base::time::SessionTime;

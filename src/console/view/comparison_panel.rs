@@ -15,9 +15,7 @@ use tomcom_core::base::text::decimal;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::SignalKind;
 use tomcom_session::Session;
-use tomcom_session::history::comparison::{
-    Communication, SenderComparison, UnmatchedCommunication,
-};
+use tomcom_session::history::comparison::{Communication, SenderComparison, UnmatchedCommunication};
 
 /// Time that one terminal column of the comparison stands for, in seconds.
 const COLUMN_S: f64 = 1.0;

@@ -285,7 +285,7 @@ pub fn advised(session: &Session, advice: &Recommendation) -> String {
 
 pub fn offer_opened(offer: &OfferedAdvice) -> EntityUpdate {
     let unseen = if offer.visible { "" } else { " (not visible to a wizard)" };
-    let text = format!("offer to the wizard: {}{unseen}", wording::offered(&offer.what));
+    let text = format!("offer to the wizard: {}{unseen}", wording::signal(&offer.what));
     say("assistant/offers", SceneLogLevel::Info, text, entity_content::SIGNAL)
 }
 

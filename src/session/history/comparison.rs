@@ -12,9 +12,7 @@ use tomcom_core::communication::Signal;
 use tomcom_core::communication::concept::{BenefitUnit, ConceptName};
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption};
 use tomcom_core::kitchen::{AspectId, Kitchen, LocationId, LocationKind, OrderContent, State};
-use tomcom_core::measures::matching::{
-    CommunicationEvent, MatchCounts, MatchCriterion, Similarity, matched,
-};
+use tomcom_core::measures::matching::{CommunicationEvent, MatchCounts, MatchCriterion, Similarity, matched};
 use tomcom_core::measures::sequences::FALSE_BELOW;
 
 /// A P(truth) of at least this counts as certain.

@@ -220,7 +220,7 @@ fn advised(kitchen: &Kitchen, advice: &Recommendation, by: ConceptName) -> Optio
 
 fn offered(offer: &OfferedAdvice) -> String {
     let unseen = if offer.visible { "" } else { " (not visible to a wizard)" };
-    format!("offer: {}{unseen}", wording::offered(&offer.what))
+    format!("offer: {}{unseen}", wording::signal(&offer.what))
 }
 
 /// An entry of the list of events: who caused it, and what happened.

@@ -136,7 +136,15 @@ impl EstimatedFalseBeliefs {
             if let Some((thinks, truth)) = held {
                 self.last[index] = Some(self.all.len());
                 let about = wording::aspect(kitchen, state, aspect);
-                self.all.push(EstimatedFalseBelief { aspect, began: now, ended: None, end: None, thinks, truth, about });
+                self.all.push(EstimatedFalseBelief {
+                    aspect,
+                    began: now,
+                    ended: None,
+                    end: None,
+                    thinks,
+                    truth,
+                    about,
+                });
             }
         }
     }
@@ -206,9 +214,10 @@ impl EstimatedFalseBeliefs {
 
 /// What corrected a belief about an aspect whose true value stayed, at this event.
 fn corrected_by(session: &Session, aspect: AspectId, event: &Event) -> FalseBeliefEnd {
-    let is_told = session.shown.as_ref().is_some_and(|shown| {
-        aspects_told(&session.kitchen, session.state, &shown.signal).contains(&aspect)
-    });
+    let is_told = session
+        .shown
+        .as_ref()
+        .is_some_and(|shown| aspects_told(&session.kitchen, session.state, &shown.signal).contains(&aspect));
     match event {
         Event::Press { agent: Agent::Human, .. } => FalseBeliefEnd::Press,
         _ if is_told => FalseBeliefEnd::Signal,

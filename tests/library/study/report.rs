@@ -1,8 +1,6 @@
 //! The report: participants, robot, methods, raters.
 
-use tomcom_core::communication::offer::{
-    Offer, OfferCloseReason, OfferKeyKind, OfferUse, OfferedAdvice,
-};
+use tomcom_core::communication::offer::{Offer, OfferCloseReason, OfferKeyKind, OfferUse, OfferedAdvice};
 use tomcom_core::measures::raters::{BeliefSource, ErrorCauseCode, RaterCodes, RaterConsensus};
 use tomcom_core::robot::{AbortReason, SafetyMode};
 use tomcom_session::log::{consensus_file, rater_codes};

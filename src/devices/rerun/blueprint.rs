@@ -38,8 +38,8 @@ const AFTER_NS: i64 = 15_000_000_000;
 /// table from the human's side.
 const EYE_M: [f32; 3] = [1.3, -1.0, 0.98];
 const LOOKED_AT_M: [f32; 3] = [0.3, 0.0, 0.2];
-/// Range of the axis of probabilities, with room for curves at both ends.
-const PROBABILITY: [f64; 2] = [-0.03, 1.03];
+/// Range of the axis of probabilities, with room for the legend above the curves.
+const PROBABILITY: [f64; 2] = [-0.03, 1.5];
 
 /// One of the recordings that a stream shows side by side.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -23,12 +23,9 @@ pub enum FalseBeliefEnd {
     /// A signal about the state aspect was on the participant's display.
     Signal,
     Look,
-    /// A press of the human.
-    Press,
+    Press(Agent),
     AnotherValue,
     TrialEnd,
-    /// Evidence of another kind.
-    OtherEvidence,
 }
 
 impl FalseBeliefEnd {
@@ -38,10 +35,10 @@ impl FalseBeliefEnd {
             FalseBeliefEnd::KitchenChange => "until the kitchen changed",
             FalseBeliefEnd::Signal => "until a signal told it",
             FalseBeliefEnd::Look => "until a look",
-            FalseBeliefEnd::Press => "until a press of the human",
+            FalseBeliefEnd::Press(Agent::Human) => "until a press of the human",
+            FalseBeliefEnd::Press(Agent::Robot) => "until a press of the robot",
             FalseBeliefEnd::AnotherValue => "until another wrong value was believed",
             FalseBeliefEnd::TrialEnd => "until the trial ended",
-            FalseBeliefEnd::OtherEvidence => "until other evidence",
         }
     }
 }
@@ -212,16 +209,16 @@ impl EstimatedFalseBeliefs {
     }
 }
 
-/// What corrected a belief about an aspect whose true value stayed, at this event.
+/// What corrected a belief about an aspect whose true value stayed, at this event. Events that are no evidence come after
+/// samples of gaze that were.
 fn corrected_by(session: &Session, aspect: AspectId, event: &Event) -> FalseBeliefEnd {
     let is_told = session
         .shown
         .as_ref()
         .is_some_and(|shown| aspects_told(&session.kitchen, session.state, &shown.signal).contains(&aspect));
     match event {
-        Event::Press { agent: Agent::Human, .. } => FalseBeliefEnd::Press,
+        Event::Press { agent, .. } => FalseBeliefEnd::Press(*agent),
         _ if is_told => FalseBeliefEnd::Signal,
-        Event::Gaze(_) => FalseBeliefEnd::Look,
-        _ => FalseBeliefEnd::OtherEvidence,
+        _ => FalseBeliefEnd::Look,
     }
 }

@@ -209,6 +209,13 @@ fn errors_of_a_recording_are_listed_as_commands_that_open_the_viewer_there() {
         assert!(complaint(&["review", recording, "--errors", "--at", at]).contains("--errors"), "{at}");
     }
     assert!(line(", false belief 1: ").contains(": thinks "), "{told}");
+    let until = ["a look", "a press of the", "a signal", "the kitchen", "another wrong value", "the trial ended"];
+    for line in told.lines().filter(|line| line.contains(", false belief")) {
+        let end = line.split_once(" s, until ").map_or("", |(_, end)| end);
+        assert!(until.iter().any(|until| end.starts_with(until)), "{line}");
+    }
+    // What was believed wrong before an error.
+    assert!(told.lines().any(|line| line.contains(", error ") && line.contains("; by the estimate, ")), "{told}");
     // Each option lists its own only.
     let listed = list(&["--errors"]);
     assert!(listed.lines().all(|line| line.contains(", error ")), "{listed}");

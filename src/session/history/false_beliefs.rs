@@ -189,10 +189,10 @@ impl EstimatedFalseBeliefs {
         held.sort_by_key(|one| one.began);
         let told = held.iter().take(2).map(|one| {
             let since = session.trial_clock_at(one.began);
-            format!("{} {} since {since}", one.about, one.told(kitchen))
+            format!("{}: {} since {since}", one.about, one.told(kitchen))
         });
-        let told = told.collect::<Vec<_>>().join(" and ");
-        (!told.is_empty()).then(|| format!("by the estimate, {told}"))
+        let told = told.collect::<Vec<_>>().join("; ");
+        (!told.is_empty()).then(|| format!("believed wrong, by the estimate: {told}"))
     }
 
     /// When the belief about an aspect that is false at a time became right; `None` if it has not.

@@ -215,7 +215,10 @@ fn errors_of_a_recording_are_listed_as_commands_that_open_the_viewer_there() {
         assert!(until.iter().any(|until| end.starts_with(until)), "{line}");
     }
     // What was believed wrong before an error.
-    assert!(told.lines().any(|line| line.contains(", error ") && line.contains("; by the estimate, ")), "{told}");
+    assert!(
+        told.lines().any(|line| line.contains(", error ") && line.contains("; believed wrong, by the estimate: ")),
+        "{told}"
+    );
     // Each option lists its own only.
     let listed = list(&["--errors"]);
     assert!(listed.lines().all(|line| line.contains(", error ")), "{listed}");

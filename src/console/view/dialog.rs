@@ -237,7 +237,7 @@ fn presses_around(session: &Session, mark: SessionTime) -> String {
     let (before, after): (Vec<_>, Vec<_>) = presses.partition(|entry| entry.time <= mark);
     let told = before[before.len().saturating_sub(2)..].iter().chain(after.first()).map(|entry| {
         let (who, what) = event_words::happening(&session.kitchen, &entry.what);
-        format!("{} {who} {what}. ", session.trial_clock_at(entry.time))
+        format!("{} {who} {what}\n", session.trial_clock_at(entry.time))
     });
     told.collect()
 }
@@ -251,7 +251,7 @@ pub fn answer(brush: &mut Painter, screen: Rect, session: &Session, text: &TextI
 }
 
 fn input_line(brush: &mut Painter, screen: Rect, text: &TextInput, (title, remark): (&str, &str), says: &str) {
-    let lines = wrap(says, COLUMNS - 4);
+    let lines: Vec<String> = says.lines().flat_map(|line| wrap(line, COLUMNS - 4)).collect();
     let size = (COLUMNS, lines.len() as u16 + 7);
     let inside = open(brush, screen, size, title, remark);
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));

@@ -8,8 +8,11 @@ Needs pylsl. The session file asks for the stream: outlets = ["markers"] under [
 import sys
 import time
 
-from pylsl import StreamInlet, resolve_bypred
-from pylsl.util import LostError
+try:
+    from pylsl import StreamInlet, resolve_bypred
+    from pylsl.util import LostError
+except ModuleNotFoundError as missing:
+    sys.exit(f"{missing.name} is not installed: pip install pylsl")
 
 
 def follow(seconds):

@@ -15,8 +15,12 @@ import threading
 import time
 
 from gaze_sender import arguments, sample, sender
-from pupil_labs.real_time_screen_gaze.gaze_mapper import GazeMapper
-from pupil_labs.realtime_api.simple import Device, discover_one_device
+
+try:
+    from pupil_labs.real_time_screen_gaze.gaze_mapper import GazeMapper
+    from pupil_labs.realtime_api.simple import Device, discover_one_device
+except ModuleNotFoundError as missing:
+    sys.exit(f"{missing.name} is not installed: pip install pupil-labs-realtime-api real-time-screen-gaze")
 
 # The phone's clock is compared with this computer's so often, in seconds, and each time so often in a row.
 COMPARE_S, COMPARISONS = 1.0, 5

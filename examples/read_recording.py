@@ -8,7 +8,14 @@ Prints who took part, how the trial went, and where gaze was.
 
 import sys
 
-import tomcom
+try:
+    import pandas  # noqa: F401
+    import tomcom
+except ModuleNotFoundError as missing:
+    sys.exit(
+        f"{missing.name} is not installed: pip install pandas tomcom-*.whl, with the wheel of tomcom's release (.ci/package makes it); "
+        "or, with tomcom's sources, pip install pandas and export PYTHONPATH=…/packaging/python"
+    )
 
 
 def main(recording):

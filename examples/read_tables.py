@@ -8,7 +8,10 @@ Prints the error rate by condition, the paired difference of every participant, 
 import sys
 from pathlib import Path
 
-import pandas
+try:
+    import pandas
+except ModuleNotFoundError as missing:
+    sys.exit(f"{missing.name} is not installed: pip install pandas")
 
 
 def main(folder):

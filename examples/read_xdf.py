@@ -9,9 +9,12 @@ can be cut out around the events.
 import json
 import sys
 
-import numpy
-import pandas
-import pyxdf
+try:
+    import numpy
+    import pandas
+    import pyxdf
+except ModuleNotFoundError as missing:
+    sys.exit(f"{missing.name} is not installed: pip install pyxdf pandas")
 
 
 def read(file):

@@ -53,7 +53,7 @@ use crate::run::key_file;
 use crate::run::options::{self, DEFAULT_SESSION};
 use crate::run::plan::{self, StudyProgress};
 use crate::run::review_console as console_over;
-use tomcom_core::base::text::{PathText, printable};
+use tomcom_core::base::text::{PathText, did_you_mean, printable};
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::history::event_words;
 use tomcom_session::log::{self, ExclusionRecord, LogEnding, LogReader};
@@ -61,6 +61,7 @@ use tomcom_session::replay::RecordingReplay;
 use tomcom_session::verify;
 use tomcom_study::analysis::kitchen_summary::{self, KitchenSummary};
 use tomcom_study::analysis::recording_summary::RecordingSummary;
+use tomcom_study::files::corrected;
 use tomcom_study::standing;
 
 /// Exit code of a command that failed.
@@ -262,7 +263,10 @@ fn exclude_participant(args: &ExcludeArgs, code: &str, reason: &str) -> Result<(
 
 fn correct(args: &CorrectArgs) -> Result<(), Failure> {
     let recording = list::chosen(&args.recording, "correct")?;
-    let correction = log::correct(&recording, args.code.as_deref(), args.why.as_deref().unwrap_or_default())?;
+    let correction = log::correct(&recording, args.code.as_deref(), args.reason.as_deref().unwrap_or_default())?;
+    if args.code.is_some() {
+        corrected::remarks(&recording, &correction)?.iter().for_each(|remark| put_aside(&format!("{remark}\n")));
+    }
     print(args.format, &correction, || {
         let (before, after) = (&correction.before, &correction.after);
         format!("{} is a recording of {after}, no longer of {before}\n", recording.display())
@@ -306,9 +310,10 @@ fn man(args: &ManArgs) -> Result<(), Failure> {
             Some(command) => command.clone(),
             None => {
                 let help = "a command that tomcom --help lists";
+                let near = did_you_mean(name, root.get_subcommands().map(clap::Command::get_name));
                 return Err(Failure::Wrong(miette::miette!(
                     help = help,
-                    "found {name}, which is not a command of tomcom"
+                    "found {name}, which is not a command of tomcom{near}"
                 )));
             }
         },

@@ -124,7 +124,7 @@ pub(super) struct PlanArgs {
 /// Participants are simulated. Signals come from nobody, the assistant, or a scripted wizard.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Example: tomcom simulate sessions/default.toml --trials 20 --seed 7 --arm timed --out recordings\nMore: docs/study.md"
+    after_help = "Example: tomcom simulate sessions/default.toml --trials 20 --seed 7 \\\n            --arm timed --out recordings\nMore: docs/study.md"
 )]
 pub(super) struct SimulateArgs {
     /// The session file to simulate.
@@ -270,7 +270,7 @@ pub(super) struct KeysArgs {
 /// The recordings must be closed. Their logs stay as they are.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "While the session is open, its console does it.\nExamples: tomcom exclude sessions/2026-03-14-P07-1 --reason \"the tracker slipped\"\n          \
+    after_help = "While the session is open, its console does it.\nExamples: tomcom exclude sessions/2026-03-14-P07-1 --reason \"tracker slipped\"\n          \
                   tomcom exclude sessions --code P07 --reason \"asked for it\"\nMore: docs/recordings.md",
     group = ArgGroup::new("ruling").args(["reason", "back"]).required(true).multiple(true)
 )]
@@ -297,7 +297,7 @@ pub(super) struct ExcludeArgs {
 /// goes by that. Exports and reports that were made before still have the old code.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples: tomcom correct sessions/2026-03-14-P02-1 --code P03 --why \"the code of the day before\"\n          \
+    after_help = "Examples: tomcom correct sessions/2026-03-14-P02-1 --code P03 \\\n            --reason \"the code of the day before\"\n          \
                   tomcom correct sessions/2026-03-14-P02-1 --undo\nMore: docs/recordings.md",
     group = ArgGroup::new("correction").args(["code", "undo"]).required(true)
 )]
@@ -305,11 +305,11 @@ pub(super) struct CorrectArgs {
     /// The folder of a recording.
     pub(super) recording: PathBuf,
     /// The code of the participant who took part.
-    #[arg(long, requires = "why")]
+    #[arg(long, requires = "reason")]
     pub(super) code: Option<String>,
-    /// Why the code is corrected.
+    /// Reason for the correction.
     #[arg(long)]
-    pub(super) why: Option<String>,
+    pub(super) reason: Option<String>,
     /// Take all corrections back: the code in the log holds again.
     #[arg(long)]
     pub(super) undo: bool,
@@ -344,7 +344,9 @@ pub(super) struct DoctorArgs {
 
 /// Prints the completion script for a shell.
 #[derive(Debug, Args)]
-#[command(after_help = "Example: tomcom completions bash > ~/.local/share/bash-completion/completions/tomcom")]
+#[command(
+    after_help = "Example: tomcom completions bash \\\n            > ~/.local/share/bash-completion/completions/tomcom"
+)]
 pub(super) struct CompletionsArgs {
     pub(super) shell: clap_complete::Shell,
 }

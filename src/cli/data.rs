@@ -171,7 +171,7 @@ fn check_terminal() -> Result<(), Failure> {
 /// records of training. Only what tomcom wrote is deleted. It is listed first, and what is left, with the reason.
 #[derive(Debug, Args)]
 #[command(after_help = "Session files stay, and so does what other programs have written, such as an eye tracker.\n\
-                  Exit code 0: all of it below the folder is deleted. 1: there was nothing, or something is left. 2: wrong arguments.\n\
+                  Exit code 0: all of it below the folder is deleted. 1: there was nothing, or\nsomething is left. 2: wrong arguments.\n\
                   Example: tomcom forget P07 --in sessions\nMore: docs/recordings.md, docs/security.md")]
 pub(super) struct ForgetArgs {
     /// The code of the participant.

@@ -20,6 +20,9 @@ use tomcom_study::files::recordings;
 /// Foxglove's types, gaze, beliefs and events. As annotations beside the recording's films, for ELAN and BORIS, and as
 /// subtitles. The logs stay as they are.
 #[derive(Debug, Args)]
+#[command(
+    override_usage = "tomcom export [OPTIONS] --bids <DIR> [RECORDING]...\n       tomcom export [OPTIONS] --mcap|--elan|--boris|--vtt [RECORDING]..."
+)]
 #[command(group(ArgGroup::new("what").required(true).multiple(true).args(["bids", "mcap", "elan", "boris", "vtt"])))]
 #[command(after_help = "Labels of participants are the letters and digits of their codes; what is changed is told.\n\
                   Examples: tomcom export sessions --bids ../bids\n          \

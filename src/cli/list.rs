@@ -10,7 +10,7 @@ use super::failure::Failure;
 use super::output::{OutputFormat, print, progress, put_aside};
 use crate::run::near_path;
 use crate::run::recording_list::{self, RecordingListDetail};
-use tomcom_core::base::text::count;
+use tomcom_core::base::text::{count, did_you_mean};
 use tomcom_session::log::{LOG_NAME, LogReader};
 use tomcom_study::files::recordings;
 use tomcom_study::gathered::GatheredRecordings;
@@ -68,14 +68,17 @@ fn told(found: GatheredRecordings) -> GatheredRecordings {
     found
 }
 
-/// Finds the recording at a path: if the path is a folder of recordings, the user chooses a recording at the terminal.
+/// Finds the recording at a path: of a folder of recordings the only one, or the one that the user chooses at the terminal.
 /// `does`: what is done with it, as the name of a key.
 pub(super) fn chosen(path: &Path, does: &'static str) -> Result<PathBuf, Failure> {
     exists(path)?;
     if !path.is_dir() || path.join(LOG_NAME).exists() {
         return Ok(path.to_path_buf());
     }
-    let found = recordings::of_folder(path)?;
+    let mut found = recordings::of_folder(path)?;
+    if found.len() == 1 {
+        return Ok(found.remove(0));
+    }
     if std::io::stdin().is_terminal() && std::io::stdout().is_terminal() {
         return recording_list::pick(path, does)?.ok_or(Failure::Unread);
     }
@@ -104,10 +107,11 @@ pub(super) fn of_participant(folder: &Path, code: &str) -> Result<Vec<PathBuf>, 
         codes.insert(own);
     }
     if found.is_empty() {
+        let near = did_you_mean(code, &codes);
         let codes: Vec<String> = codes.into_iter().take(MOST_NAMED).collect();
         return Err(Failure::Wrong(miette::miette!(
             help = format!("the code of a participant who is recorded there, such as {}", codes.join(", ")),
-            "{}: found no recording of {code}",
+            "{}: found no recording of {code}{near}",
             folder.display()
         )));
     }

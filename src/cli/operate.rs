@@ -22,7 +22,7 @@ use tomcom_session::watcher::SenderComparisonSettings;
 /// Runs a session at the wizard's console, and records it.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples: tomcom operate sessions/default.toml --participant keyboard --gaze mouse\n          \
+    after_help = "Examples: tomcom operate sessions/default.toml --participant keyboard \\\n            --gaze mouse\n          \
                   tomcom operate sessions/study.toml --code P07\nMore: docs/running-a-session.md"
 )]
 pub(super) struct OperateArgs {

@@ -32,8 +32,8 @@ const SIZES: &str = "8,10,12,14,16,20,24,28,32,36,40";
 /// how many participants are needed.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples: tomcom power sessions/paper.toml --pool 200 --seed 9741 --out pool.jsonl --picture power.svg\n          \
-                  tomcom power sessions/paper.toml --pool 1000 --shard 2/8 --out part-2.jsonl\n          \
+    after_help = "Examples: tomcom power sessions/paper.toml --pool 200 --seed 9741 \\\n            --out pool.jsonl --picture power.svg\n          \
+                  tomcom power sessions/paper.toml --pool 1000 --shard 2/8 \\\n            --out part-2.jsonl\n          \
                   tomcom power sessions/paper.toml --from part-*.jsonl --out pool.jsonl\nMore: docs/planning.md"
 )]
 pub(super) struct PowerArgs {

@@ -11,7 +11,6 @@ use crate::run::open_viewer::{
 };
 use tomcom_core::base::text::PathText;
 use tomcom_core::base::time::SessionTime;
-use tomcom_devices::scene::moment_on_clock;
 use tomcom_session::replay::ReplayLandmark;
 
 impl From<RerunViewerError> for Failure {
@@ -48,10 +47,9 @@ pub(super) fn list_landmarks(recordings: &[PathBuf], asked: AskedLandmarks) -> R
             if until.is_some_and(|until| until.secs_since(from) < asked.least) {
                 continue;
             }
-            let until = until.map_or_else(|| "the end".to_string(), moment_on_clock);
-            // To the millisecond, as the viewer has it: at a cut time the event would not have happened.
-            let at = format!("{from}.{:03}", from.0 / 1_000_000 % 1000);
-            let command = format!("tomcom review {} --at {at}", shell_word(recording));
+            // To the millisecond, as the viewer and exported annotations have it.
+            let until = until.map_or_else(|| "the end".to_string(), SessionTime::with_ms);
+            let command = format!("tomcom review {} --at {}", shell_word(recording), from.with_ms());
             text += &format!("{command}  # to {until}, {words}\n");
         }
         if text.is_empty() {

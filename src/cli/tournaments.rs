@@ -24,8 +24,8 @@ use tomcom_study::tournament::describe;
 /// cost less than without signals, minus 1.5 for each signal.
 #[derive(Clone, Debug, Args)]
 #[command(
-    after_help = "Examples: tomcom tournament sessions/default.toml --concepts tom-com,tom,\"python my_agent.py\" --trials 100\n          \
-                  tomcom tournament sessions/default.toml --concepts tom-com,tom --trials 1000 --shard 2/8\nMore: docs/your-own-mind.md"
+    after_help = "Examples: tomcom tournament sessions/default.toml \\\n            --concepts tom-com,tom,\"python my_agent.py\" --trials 100\n          \
+                  tomcom tournament sessions/default.toml --concepts tom-com,tom \\\n            --trials 1000 --shard 2/8\nMore: docs/your-own-mind.md"
 )]
 pub(super) struct TournamentArgs {
     /// The session file with the settings.

@@ -265,7 +265,7 @@ impl OpenStream {
             let _ = self.stream.flush_async();
         }
         // The timeline shows whole milliseconds, which are easier to read; no two updates are closer together.
-        self.now = [whole(moment.trial.0 / MS * MS), whole(moment.time.0), whole(moment.step)];
+        self.now = [whole(moment.trial.ms() * MS), whole(moment.time.0), whole(moment.step)];
         let [trial, session, step] = self.now;
         self.stream.set_time(TRIAL_TIME, re_sdk::TimeCell::from_duration_nanos(trial));
         self.stream.set_time(SESSION_TIME, re_sdk::TimeCell::from_duration_nanos(session));

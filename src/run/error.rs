@@ -90,7 +90,7 @@ pub enum LiveError {
     /// A recording was corrected to the code of somebody who is not in the study plan.
     #[error("found {found}")]
     #[diagnostic(help(
-        "take the correction back: tomcom correct {} --undo; or correct it to a code of the plan: --code CODE --why …",
+        "take the correction back: tomcom correct {} --undo; or correct it to a code of the plan: --code CODE --reason …",
         recording.display()
     ))]
     Corrected {

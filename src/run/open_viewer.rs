@@ -392,7 +392,7 @@ pub struct RecordedLandmark {
     pub words: String,
     /// On the trial's clock.
     pub from: SessionTime,
-    /// On the trial's clock: of an error, the next press; `None` if it lasts to the end of the recording.
+    /// On the trial's clock: of an error, the human's next press; `None` if it lasts to the end of the recording.
     pub until: Option<SessionTime>,
 }
 
@@ -418,11 +418,11 @@ pub fn landmarks(recording: &Path, kinds: &[ReplayLandmark]) -> FileResult<Vec<R
         for ((number, (nth, press)), error) in (1..).zip(errors).zip(explained) {
             let coded = codes.iter().filter_map(|(rater, codes)| Some((rater, codes.0.get(&press.seq)?)));
             let coded: String = coded.map(|(rater, code)| format!("; {rater}: {}", wording::code(code))).collect();
-            let next = follower.judged.get(nth + 1).map(|next| next.time);
             let ExplainedError { press: name, with_cause, .. } = error;
             let believed = follower.false_beliefs.told_before(session, press.time);
             let believed = believed.map_or(String::new(), |believed| format!("; {believed}"));
-            add(press.time, next, format!("error {number}: {name}: {with_cause}{believed}{coded}"));
+            let words = format!("error {number}: {name}: {with_cause}{believed}{coded}");
+            add(press.time, follower.judged_until(nth), words);
         }
     }
     if kinds.contains(&ReplayLandmark::Signal) {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::run::files;
+use tomcom_core::base::text::did_you_mean;
 use tomcom_core::communication::settings::ConceptSpec;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_session::LogHeader;
@@ -138,8 +139,10 @@ pub fn participant_of_plan(plan: &PlanSpec, code: Option<&str>) -> Result<usize,
     let remedy = "--code with one of the codes that tomcom plan SESSION lists";
     let wrong = |found: String| SettingError::new("code", found, remedy);
     let code = code.ok_or_else(|| wrong(format!("the plan \"{}\", and no code of a participant", plan.name)))?;
-    let place = plan.codes().iter().position(|one| one == code);
-    place.ok_or_else(|| wrong(format!("--code {code}, a participant who is not in the plan \"{}\"", plan.name)))
+    let codes = plan.codes();
+    let near = || did_you_mean(code, &codes);
+    let stranger = || wrong(format!("--code {code}, a participant who is not in the plan \"{}\"{}", plan.name, near()));
+    codes.iter().position(|one| one == code).ok_or_else(stranger)
 }
 
 /// The session of commands that are given none.

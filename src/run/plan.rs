@@ -11,10 +11,10 @@ use tomcom_core::base::text::PathText;
 use tomcom_core::base::text::count;
 use tomcom_session::files::file_error::{FileError, FileResult, place_of, read_text};
 use tomcom_session::files::{KitchenWithSources, SessionSetup};
-use tomcom_session::plan::{ParticipantProgress, RecordingOutcome, Study, TrialAttempt, orders};
+use tomcom_session::plan::{ParticipantProgress, RecordingOutcome, Study, TrialAttempt, listed, orders};
 use tomcom_session::study_arm::StudyArm;
 use tomcom_study::files::pool_file;
-use tomcom_study::frozen_plan::{FrozenPlan, PlanDifference};
+use tomcom_study::frozen_plan::FrozenPlan;
 
 /// Progress of a study: the output of `tomcom plan SESSION`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -131,9 +131,13 @@ pub fn check_frozen(session: &Path, files: &SessionSetup, frozen: &Path) -> File
         return Ok(());
     }
     let right = |value: &str| format!("{value}, as it was frozen in {}", frozen.display());
-    if let Some(PlanDifference { path, nth, found, frozen }) = plan.differs_from(&study) {
+    let changed = plan.differs_from(&study);
+    if let [first, others @ ..] = &changed[..] {
         let text = read_text(session)?;
-        return Err(FileError::at(session, &text, place_of(&text, &path, nth), found, right(&frozen)));
+        let [before, found] = first.settings();
+        let others = if others.is_empty() { String::new() } else { format!("; changed, too: {}", listed(others)) };
+        let place = place_of(&text, &first.path, first.nth);
+        return Err(FileError::at(session, &text, place, found, right(&before) + &others));
     }
     let KitchenWithSources { layout, recipes, .. } = &files.kitchen;
     let layout_path = session.parent().unwrap_or(Path::new(".")).join(&layout.path);

@@ -16,7 +16,7 @@ use tomcom_core::base::text::count;
 use tomcom_session::files::SessionSetup;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::log::{LogReader, RecordingLock, RecordingWriteError};
-use tomcom_session::plan::{NextRecording, ParticipantProgress, PlanRecording, RecordingOutcome, Study};
+use tomcom_session::plan::{NextRecording, ParticipantProgress, PlanRecording, RecordingOutcome, Study, listed};
 use tomcom_session::settings::ParticipantKind;
 use tomcom_session::wall_display::AnswerDevice;
 use tomcom_session::watcher::SenderComparisonSettings;
@@ -132,7 +132,7 @@ impl Planned {
         let out = &self.series.out;
         let header = LogReader::open(&out.join(&last.recording))?.header;
         let kitchen = &self.series.files.kitchen;
-        let changed = self.study.changed_since(&header, [&kitchen.layout, &kitchen.recipes]).join(", ");
+        let changed = listed(&self.study.changed_since(&header, [&kitchen.layout, &kitchen.recipes]));
         let number = count(others.len() as u64, "recording", "recordings");
         Ok(Some(StartPrompt::new(
             format!("{code}: THE PLAN HAS CHANGED"),

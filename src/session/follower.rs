@@ -314,6 +314,11 @@ impl SessionFollower {
         self.judged.push(JudgedPress { seq, time, button, before, verdict, belief_known, cause });
     }
 
+    /// When what shows in a judged press, such as an error, ends: with the human's next press; `None`: with the recording.
+    pub fn judged_until(&self, index: usize) -> Option<SessionTime> {
+        self.judged.get(index + 1).map(|next| next.time)
+    }
+
     /// Number of judged presses whose cost to go is not proven.
     pub fn unproven(&self) -> usize {
         self.judged.iter().filter(|press| !press.verdict.is_proven).count()

@@ -103,8 +103,13 @@ pub struct CodeCorrection {
 impl CodeCorrection {
     /// "P02 is P03 (typed wrong; lab, 2026-03-14T10:00:00Z)".
     pub fn in_words(&self) -> String {
-        let CodeCorrection { before, after, why, by, at } = self;
+        let CodeCorrection { why, by, at, .. } = self;
         let by = if by.is_empty() { String::new() } else { format!("{by}, ") };
-        format!("{before} is {after} ({why}; {by}{at})")
+        format!("{} ({why}; {by}{at})", self.codes())
+    }
+
+    /// "P02 is P03".
+    pub fn codes(&self) -> String {
+        format!("{} is {}", self.before, self.after)
     }
 }

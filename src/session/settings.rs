@@ -13,6 +13,7 @@ use crate::tracker::TrackerSpec;
 use crate::wall_display::DisplaySpec;
 use crate::{person_code, probes, ranges};
 use tomcom_core::base::number_range::OutOfRange;
+use tomcom_core::base::text::did_you_mean;
 use tomcom_core::communication::HighlightSet;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::settings::{AssistantSpec, ConceptSpec, ExternalMind, ShadowMode};
@@ -186,7 +187,8 @@ impl SessionSpec {
         if let Some(name) = named.iter().find(|name| !kitchen.location_named(name).is_some_and(can_be)) {
             let places = (0..kitchen.locations.len()).map(|index| LocationId(index as u8)).filter(|&id| can_be(id));
             let places: Vec<&str> = places.map(|id| &*kitchen.location(id).name).collect();
-            return wrong(format!("and {name} cannot be highlighted"), format!("some of: {}", places.join(", ")));
+            let near = did_you_mean(name, &places);
+            return wrong(format!("and {name} cannot be highlighted{near}"), format!("some of: {}", places.join(", ")));
         }
         if let Some(name) = named.iter().enumerate().find(|(index, name)| named[..*index].contains(name)) {
             return wrong(format!("with {} twice", name.1), "each place once".to_string());

@@ -53,6 +53,10 @@ pub struct StudyArmCounts {
 }
 
 impl StudyArmCounts {
+    fn per_trial(&self) -> f64 {
+        self.events as f64 / self.trials as f64
+    }
+
     /// Events of the primary outcome per 100 presses of the human, over all trials of the arm together.
     pub fn per_100(&self) -> f64 {
         100.0 * self.events as f64 / self.presses as f64
@@ -70,8 +74,25 @@ pub struct StudyArmContrast {
     /// Confidence interval of the ratio of rates.
     pub interval: [f64; 2],
     pub p_holm: f64,
+    /// Why the ratio is not reliable; absent where nothing speaks against it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub doubt: Option<ContrastDoubt>,
     #[serde(flatten)]
     pub contrast: MixedModelContrast,
+}
+
+/// Mean number of events in a trial below which the primary model is not relied on: models that take counts as normal are
+/// biased there (Bolker et al. 2009, Trends in Ecology and Evolution 24, 127-135: fewer than five counts in a treatment),
+/// and so are those of logarithms of counts (O'Hara and Kotze 2010, Methods in Ecology and Evolution 1, 118-122).
+pub const FEW_EVENTS: f64 = 5.0;
+
+/// What speaks against the ratio of the primary model.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ContrastDoubt {
+    /// Mean number of events in a trial of the arm with the fewest; null from [`FEW_EVENTS`] on.
+    pub few_events: Option<f64>,
+    /// The ratio by the negative binomial model, where it lies outside the interval.
+    pub other_ratio: Option<f64>,
 }
 
 /// What a contrast says about the rates of two arms.
@@ -183,7 +204,8 @@ fn contrasts(design: &ArmComparisonDesign, model: &LinearMixedModel) -> Vec<Stud
         let contrast = model.contrast(&design.weights(pair, model.estimates.len()))?;
         let (arm, against) = pair;
         let (ratio, interval) = (contrast.estimate.exp(), [f64::NAN; 2]);
-        Some(StudyArmContrast { arm, against, ratio, level: LEVEL, interval, p_holm: contrast.p, contrast })
+        let doubt = None;
+        Some(StudyArmContrast { arm, against, ratio, level: LEVEL, interval, p_holm: contrast.p, doubt, contrast })
     };
     let mut all: Vec<StudyArmContrast> = arm_pairs(&design.arms).into_iter().filter_map(contrast).collect();
     let corrected = holm(&all.iter().map(|one| one.contrast.p).collect::<Vec<_>>());
@@ -220,6 +242,27 @@ pub fn holm(p: &[f64]) -> Vec<f64> {
     corrected
 }
 
+fn doubt(
+    one: &StudyArmContrast,
+    arms: &[StudyArmCounts],
+    counts: Option<&NegativeBinomialComparison>,
+) -> Option<ContrastDoubt> {
+    let own = arms.iter().filter(|counts| [one.arm, one.against].contains(&counts.arm));
+    let fewest = own.map(StudyArmCounts::per_trial).fold(f64::INFINITY, f64::min);
+    let few_events = Some(fewest).filter(|fewest| *fewest < FEW_EVENTS);
+    let other = counts.and_then(|counts| counts.of(one)).map(|other| other.ratio);
+    let [low, high] = one.interval;
+    let other_ratio = other.filter(|ratio| *ratio < low || *ratio > high);
+    (few_events.is_some() || other_ratio.is_some()).then_some(ContrastDoubt { few_events, other_ratio })
+}
+
+impl NegativeBinomialComparison {
+    /// The same contrast by this model.
+    pub fn of(&self, contrast: &StudyArmContrast) -> Option<&NegativeBinomialContrast> {
+        self.contrasts.iter().find(|other| (other.arm, other.against) == (contrast.arm, contrast.against))
+    }
+}
+
 /// `trials`: ordered by participant and period; empty where the model cannot be estimated.
 pub(crate) fn primary_contrasts(trials: Vec<StudyArmTrial>) -> Vec<StudyArmContrast> {
     let design = ArmComparisonDesign::new(trials);
@@ -244,7 +287,7 @@ pub(crate) fn compare_counts(trials: Vec<StudyArmTrial>, aims: StudyAims) -> Opt
         return None;
     }
     let model = design.linear(false)?;
-    let found = contrasts(&design, &model);
+    let mut found = contrasts(&design, &model);
     let with_carry_over = match design.arms.len() {
         0..=2 => Vec::new(),
         _ => design.linear(true).map_or_else(Vec::new, |model| contrasts(&design, &model)),
@@ -263,6 +306,7 @@ pub(crate) fn compare_counts(trials: Vec<StudyArmTrial>, aims: StudyAims) -> Opt
             holds: upper < aims.margin,
         }
     });
+    let non_inferiority: Vec<NonInferiority> = non_inferiority.collect();
     let outcome_of = |arm: StudyArm| {
         let own = || design.trials.iter().filter(|trial| trial.arm == arm);
         StudyArmCounts {
@@ -272,17 +316,20 @@ pub(crate) fn compare_counts(trials: Vec<StudyArmTrial>, aims: StudyAims) -> Opt
             presses: own().map(|trial| trial.presses).sum(),
         }
     };
+    let arms: Vec<StudyArmCounts> = design.arms.iter().copied().map(outcome_of).collect();
+    let negative_binomial = count_comparison(&design);
+    found.iter_mut().for_each(|one| one.doubt = doubt(one, &arms, negative_binomial.as_ref()));
     Some(StudyArmComparison {
         outcome: aims.outcome,
         participants: design.trials.last().map_or(0, |trial| trial.participant + 1),
         trials: design.trials.len(),
         left_out: Vec::new(),
-        arms: design.arms.iter().copied().map(outcome_of).collect(),
+        arms,
         standard_deviations: [model.between.sqrt(), model.within.sqrt()],
-        non_inferiority: non_inferiority.collect(),
+        non_inferiority,
         contrasts: found,
         with_carry_over,
-        negative_binomial: count_comparison(&design),
+        negative_binomial,
         groups: Vec::new(),
     })
 }

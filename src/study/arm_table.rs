@@ -136,7 +136,9 @@ pub fn describe(table: &StudyArmTable) -> String {
         ];
         text += &format!("| {} | {} | {} |\n", row.arm.name(), row.trials, cells.join(" | "));
     }
-    text + "\nper 100 presses of the human; in brackets intervals of 95 %, by a bootstrap over participants\n"
+    text += "\nper 100 presses of the human; in brackets intervals of 95 %, by a bootstrap over participants\n";
+    let without = table.arms.iter().any(|row| row.sequence_length.value.is_none());
+    text + if without { "-: no sequence of errors\n" } else { "" }
 }
 
 fn number(figure: &StudyArmStatistic, scale: f64, digits: usize) -> String {

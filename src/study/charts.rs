@@ -47,7 +47,7 @@ pub(crate) fn rates_by_condition(trials: &[TrialStatistics], outcome: PrimaryOut
         PrimaryOutcome::Sequences => "sequences per 100 presses of the human",
     };
     let values = people.iter().flat_map(|(_, points)| points.iter().map(|(_, y)| *y));
-    let width = 420.0 + 110.0 * (arms.len() - 2) as f64;
+    let width = WIDTH + 110.0 * (arms.len() - 2) as f64;
     let mut chart = SvgChart::new(width, 320.0, PlotAxis::named(&names), PlotAxis::over(label, values));
     for (first, points) in &people {
         let class = if arms.len() == 2 && first.is_assisted() { "first" } else { "second" };
@@ -76,7 +76,7 @@ pub(crate) fn improvements(trials: &[TrialStatistics]) -> Option<Markup> {
     let names = ["first unassisted,\nthen assisted".to_string(), "first assisted,\nthen unassisted".to_string()];
     let all = pairs.iter().map(|pair| percent(pair.improvement()));
     let mut chart =
-        SvgChart::new(420.0, 320.0, PlotAxis::named(&names), PlotAxis::over("fewer errors in the second trial", all));
+        SvgChart::new(WIDTH, 320.0, PlotAxis::named(&names), PlotAxis::over("fewer errors in the second trial", all));
     for (x, assisted_second) in [(0.0, true), (1.0, false)] {
         let of_group: Vec<&TrialPair> = pairs.iter().filter(|pair| pair.assisted_second == assisted_second).collect();
         for (index, pair) in of_group.iter().enumerate() {
@@ -113,7 +113,7 @@ pub(crate) fn press_durations(trials: &[TrialStatistics]) -> Option<Markup> {
     let names: Vec<String> = cells.iter().map(name).collect();
     let all = found.iter().flatten().map(|(_, seconds)| *seconds);
     let mut chart =
-        SvgChart::new(420.0, 320.0, PlotAxis::named(&names), PlotAxis::over("seconds between presses", all));
+        SvgChart::new(WIDTH, 320.0, PlotAxis::named(&names), PlotAxis::over("seconds between presses", all));
     for (x, (cell, found)) in cells.iter().zip(&found).enumerate() {
         let class = if cell.1 { "assisted" } else { "unassisted" };
         for (index, (participant, seconds)) in found.iter().enumerate() {
@@ -151,7 +151,7 @@ pub(crate) fn sequence_lengths(conditions: &[StudyConditionSummary]) -> Option<M
         .map(|length| if length == LONGEST_BAR { format!("{length}+") } else { length.to_string() })
         .collect();
     let x = PlotAxis { label: "errors per sequence", ..PlotAxis::named(&names) };
-    let mut chart = SvgChart::new(420.0, 320.0, x, PlotAxis::over("sequences per trial", all()));
+    let mut chart = SvgChart::new(WIDTH, 320.0, x, PlotAxis::over("sequences per trial", all()));
     for (side, (class, counts)) in sets.iter().enumerate() {
         for (index, &count) in counts.iter().enumerate().filter(|(_, count)| **count > 0.0) {
             let from = index as f64 - 0.38 + 0.38 * side as f64;
@@ -167,7 +167,7 @@ pub fn roc(figures: &StudySummary) -> Option<Markup> {
     let x = PlotAxis::over("useless signals per press of the human", points().map(|point| point.fpr));
     let x = PlotAxis::between(x.label, 0.0, x.to);
     let y = PlotAxis::between("belief related errors prevented", 0.0, 1.0);
-    let mut chart = SvgChart::new(420.0, 380.0, x, y);
+    let mut chart = SvgChart::new(WIDTH, 380.0, x, y);
     for roc in &figures.roc {
         chart.band(roc.concept.name(), &roc.band);
     }
@@ -184,7 +184,7 @@ pub(crate) fn equal_signals(figures: &StudySummary) -> Option<Markup> {
     figures.roc.iter().flat_map(|roc| &roc.points).next()?;
     let x = PlotAxis::between("signals per 100 presses of the human", 0.0, MOST_SIGNALS);
     let y = PlotAxis::between("belief related errors prevented", 0.0, 1.0);
-    let mut chart = SvgChart::new(420.0, 380.0, x, y);
+    let mut chart = SvgChart::new(WIDTH, 380.0, x, y);
     for roc in &figures.roc {
         curve(&mut chart, roc, MOST_SIGNALS, |point| (point.signals_per_100_actions, point.tpr));
     }
@@ -210,7 +210,7 @@ pub(crate) fn probe_calibration(found: &ProbeSummary) -> Option<Markup> {
     filled.first()?;
     let x = PlotAxis::between("predicted probability of a false belief", 0.0, 1.0);
     let y = PlotAxis::between("share of wrong answers", 0.0, 1.0);
-    let mut chart = SvgChart::new(420.0, 380.0, x, y);
+    let mut chart = SvgChart::new(WIDTH, 380.0, x, y);
     chart.line("ideal", &[(0.0, 0.0), (1.0, 1.0)]);
     let points: Vec<(f64, f64)> = filled.iter().map(|bin| (bin.predicted, bin.observed)).collect();
     chart.line("tom-com", &points);
@@ -244,7 +244,7 @@ pub fn ratios(contrasts: &[StudyArmContrast]) -> Option<Markup> {
     let names: Vec<String> =
         contrasts.iter().map(|one| format!("{}\nto {}", one.arm.title(), one.against.title())).collect();
     let ends = contrasts.iter().flat_map(|one| one.interval).map(|end| end.min(LARGEST));
-    let width = 160.0 + 110.0 * contrasts.len() as f64;
+    let width = (160.0 + 110.0 * contrasts.len() as f64).max(WIDTH);
     let mut chart =
         SvgChart::new(width, 320.0, PlotAxis::named(&names), PlotAxis::over("ratio of rates", ends.chain([1.0])));
     chart.line("ideal", &[(-0.5, 1.0), (contrasts.len() as f64 - 0.5, 1.0)]);
@@ -289,6 +289,8 @@ pub fn league(rows: &[TournamentRow]) -> String {
     document(&chart.finish("Net saving by concept, with intervals of 95 %"), STYLE)
 }
 
+/// Width of a chart that fills a column of the report; wider ones fill both, so that all have letters of one size.
+const WIDTH: f64 = 420.0;
 const SIZE: [f64; 2] = [720.0, 420.0];
 /// Least distance between the names of lines at the chart's border, as a share of the chart's height.
 const APART: f64 = 0.05;
@@ -504,7 +506,12 @@ impl SvgChart {
 
     pub fn finish(self, title: &str) -> Markup {
         let size = format!("0 0 {:.0} {:.0}", self.width, self.height);
-        html! { svg viewBox=(size) role="img" aria-label=(title) { "\n" (PreEscaped(self.body)) } "\n" }
+        let columns = self.width / WIDTH;
+        let class = (columns > 1.0).then_some("wide");
+        let style = format!("--columns: {columns:.3}");
+        html! {
+            svg viewBox=(size) class=[class] style=(style) role="img" aria-label=(title) { "\n" (PreEscaped(self.body)) } "\n"
+        }
     }
 }
 

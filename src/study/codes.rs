@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::analysis::annotations::codes::{self as annotations, AnnotatedCode};
 use crate::figures::IdenticalCodes;
 use crate::standing::exclusion_status;
-use tomcom_core::base::text::{count, decimal};
+use tomcom_core::base::text::{count, decimal, did_you_mean};
 use tomcom_core::measures::raters::{
     AgreementTable, CodableErrors, ErrorCauseCode, RaterAgreement, RaterCodes, RaterConsensus, RaterPair, of_most,
     unsettled,
@@ -402,7 +402,7 @@ pub fn read(recordings: &[CodedRecording], file: &Path) -> FileResult<Importable
     let (mut imported, mut new, mut changed) = (Vec::new(), BTreeSet::new(), BTreeMap::new());
     for row in rows {
         let Some(index) = names.iter().position(|name| *name == row.recording) else {
-            let found = format!("the recording \"{}\"", row.recording);
+            let found = format!("the recording \"{}\"{}", row.recording, did_you_mean(&row.recording, &names));
             let remedy = format!("one of the recordings that were given: {}", names.join(", "));
             return Err(wrong(&row, found, &remedy));
         };

@@ -10,7 +10,8 @@ use crate::arm_comparison::arm_pairs;
 use crate::definitions::DEFINITIONS;
 use crate::effect::LEVEL;
 use tomcom_core::base::text::count;
-use tomcom_session::plan::{PlanSpec, PrimaryOutcome, Study, what_can_change_a_trial};
+use tomcom_session::header::RecordedFile;
+use tomcom_session::plan::{PlanDifference, PrimaryOutcome, Study, differences, listed};
 use tomcom_session::study_arm::StudyArm;
 use tomcom_session::{LogHeader, SessionSpec};
 
@@ -117,27 +118,33 @@ impl FrozenPlan {
         }
     }
 
-    /// The first setting of plan and session that differs from the frozen one and can change a trial.
-    pub fn differs_from(&self, study: &Study) -> Option<PlanDifference> {
-        let session = |plan: PlanSpec, session: SessionSpec| SessionSpec { plan: Some(plan), ..session };
-        let [plan, frozen] = ["plan", "session"].map(|name| self.settings[name].clone());
-        let frozen = session(serde_json::from_value(plan).ok()?, serde_json::from_value(frozen).ok()?);
-        let now = session(study.plan.clone(), study.session.clone());
-        let [before, after] = [&frozen, &now].map(what_can_change_a_trial);
-        let path = before.keys().chain(after.keys()).find(|path| before.get(*path) != after.get(*path))?;
-        // A list is one setting, and the numbers of lists are no part of a path in the session file.
-        let is_number = |part: &&str| part.bytes().all(|byte| byte.is_ascii_digit());
-        let mut parts: Vec<&str> = path.split('.').collect();
-        while parts.pop_if(|part| is_number(&&**part)).is_some() {}
-        let (numbers, names): (Vec<&str>, Vec<&str>) = parts.iter().partition(|part| is_number(part));
-        let key = names.last()?;
-        let words = |spec: &SessionSpec| {
-            let all = serde_json::to_value(spec).unwrap_or_default();
-            let value = all.pointer(&format!("/{}", parts.join("/"))).filter(|value| !value.is_null());
-            value.map_or_else(|| format!("no {key}"), |value| format!("{key} = {value}"))
-        };
-        let nth = numbers.first().and_then(|number| number.parse().ok()).unwrap_or(0);
-        Some(PlanDifference { path: names.join("."), nth, found: words(&now), frozen: words(&frozen) })
+    /// The settings of plan and session that differ from the frozen ones and can change a trial.
+    pub fn differs_from(&self, study: &Study) -> Vec<PlanDifference> {
+        let session = |study: &Study| SessionSpec { plan: Some(study.plan.clone()), ..study.session.clone() };
+        self.study().map_or_else(Vec::new, |frozen| differences(&session(&frozen), &session(study)))
+    }
+
+    /// The study as it was frozen; `None` if this version of the program has other settings.
+    fn study(&self) -> Option<Study> {
+        let part = |name: &str| self.settings[name].clone();
+        Some(Study {
+            plan: serde_json::from_value(part("plan")).ok()?,
+            questionnaires: serde_json::from_value(part("questionnaires")).ok()?,
+            tutorial: serde_json::from_value(part("tutorial")).ok()?,
+            session: serde_json::from_value(part("session")).ok()?,
+            digest: self.plan_digest.clone(),
+        })
+    }
+
+    /// What is not as it was frozen in a recording of another version of the plan, in words.
+    fn changed_in(&self, recorded: &LogHeader) -> Option<String> {
+        let [layout, recipes] =
+            [("layout", &recorded.layout), ("recipes", &recorded.recipes)].map(|(name, recorded)| {
+                let text = self.settings[name].as_str().unwrap_or_default().to_string();
+                RecordedFile { path: recorded.path.clone(), text }
+            });
+        let changed = self.study()?.changed_since(recorded, [&layout, &recipes]);
+        Some(listed(&changed.into_iter().map(PlanDifference::reversed).collect::<Vec<_>>()))
     }
 
     fn differs_from_program(&self) -> Vec<String> {
@@ -170,17 +177,6 @@ impl FrozenPlan {
     }
 }
 
-/// A setting that is not as it was frozen.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct PlanDifference {
-    /// Its dotted path in the session file, and its index among settings with this path.
-    pub path: String,
-    pub nth: usize,
-    /// "presses = 40"; likewise as it was frozen.
-    pub found: String,
-    pub frozen: String,
-}
-
 fn current_definitions() -> Vec<FrozenDefinition> {
     let one =
         |(term, meaning): &(&str, &str)| FrozenDefinition { term: term.to_string(), meaning: meaning.to_string() };
@@ -208,6 +204,30 @@ impl RecordedPlan {
     }
 }
 
+/// The first recording, by name, of each version of a plan.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct PlanVersions(BTreeMap<String, (String, LogHeader)>);
+
+fn version(plan: &str, digest: &str) -> String {
+    format!("{plan} {digest}")
+}
+
+impl PlanVersions {
+    pub(crate) fn add(&mut self, recording: &str, header: &LogHeader) {
+        let Some(step) = &header.session.step else { return };
+        let version = version(&step.plan, &step.digest);
+        let has_earlier = |(first, _): &(String, LogHeader)| first.as_str() <= recording;
+        if !self.0.get(&version).is_some_and(has_earlier) {
+            self.0.insert(version, (recording.to_string(), header.clone()));
+        }
+    }
+
+    pub(crate) fn join(&mut self, others: &PlanVersions) {
+        others.0.values().for_each(|(recording, header)| self.add(recording, header));
+    }
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlaceInPlan {
@@ -232,17 +252,30 @@ pub struct PreregistrationCheck {
 }
 
 impl PreregistrationCheck {
-    /// Compares recordings, and this version's definitions, with the frozen plan that has this digest. `ended`: number of
-    /// trials that count though the wizard ended them.
-    pub fn new(digest: String, frozen: &FrozenPlan, recordings: &[RecordedPlan], ended: u64) -> PreregistrationCheck {
+    /// Compares recordings, and this version's definitions, with the frozen plan that has this digest. `versions`: those of
+    /// the recordings; `ended`: number of trials that count though the wizard ended them.
+    pub fn new(
+        digest: String,
+        frozen: &FrozenPlan,
+        recordings: &[RecordedPlan],
+        versions: &PlanVersions,
+        ended: u64,
+    ) -> PreregistrationCheck {
         let mut differences = frozen.differs_from_program();
         let mut others: BTreeMap<String, u64> = BTreeMap::new();
         for recording in recordings {
             let what = match &recording.plan {
                 None => "of no plan".to_string(),
                 Some((plan, _)) if *plan != frozen.plan => format!("of the plan \"{plan}\""),
-                Some((_, digest)) if *digest != frozen.plan_digest => {
-                    format!("of another version of the plan ({digest}, frozen: {})", frozen.plan_digest)
+                Some((plan, digest)) if *digest != frozen.plan_digest => {
+                    let recorded = versions.0.get(&version(plan, digest));
+                    let changed = recorded.and_then(|(_, header)| frozen.changed_in(header));
+                    let changed = changed.map_or(String::new(), |changed| format!(", which changed since: {changed}"));
+                    format!(
+                        "of another version of the plan ({}, frozen: {}){changed}",
+                        start_of(digest),
+                        start_of(&frozen.plan_digest)
+                    )
                 }
                 Some(_) => continue,
             };
@@ -272,7 +305,7 @@ impl PreregistrationCheck {
             0 => "when no recording of it was there".to_string(),
             number => format!("when {} of it there", count(number, "recording was", "recordings were")),
         };
-        let frozen = format!("the plan \"{}\" was frozen {before}, SHA-256 {}", self.plan, self.digest);
+        let frozen = format!("the plan \"{}\" was frozen {before}, SHA-256 {}…", self.plan, start_of(&self.digest));
         let to_come = match &self.to_come[..] {
             [] => String::new(),
             codes => {
@@ -287,6 +320,11 @@ impl PreregistrationCheck {
         };
         told + &to_come
     }
+}
+
+/// Enough of a digest to tell versions apart.
+fn start_of(digest: &str) -> &str {
+    digest.get(..12).unwrap_or(digest)
 }
 
 fn named(who: &str, codes: &[&str]) -> Option<String> {

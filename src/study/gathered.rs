@@ -233,7 +233,7 @@ impl FoundRecording {
                     "a copy of {copy_of} that is a recording of {}, not of {}",
                     self.place.code, first.place.code
                 );
-                let remedy = "one code of both (tomcom correct RECORDING --code CODE --why …, or --undo); or leave this copy \
+                let remedy = "one code of both (tomcom correct RECORDING --code CODE --reason …, or --undo); or leave this copy \
                               out: tomcom exclude RECORDING --reason …";
                 return wrong((found, remedy.to_string()));
             }
@@ -297,7 +297,7 @@ fn check_codes(opened: &[FoundRecording]) -> FileResult<()> {
         if let Some(other) = person_code::differing_in_case(&one.place.code, codes.keys().copied()) {
             let first = codes[other].display();
             let found = format!("a recording of {}, beside {first}, which is one of {other}", one.place.code);
-            let remedy = "one code of one participant: tomcom correct RECORDING --code CODE --why …".to_string();
+            let remedy = "one code of one participant: tomcom correct RECORDING --code CODE --reason …".to_string();
             return Err(FileError::from_finding(&one.path, found, remedy));
         }
         codes.entry(&one.place.code).or_insert(&one.path);

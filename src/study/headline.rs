@@ -3,7 +3,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::arm_comparison::{ContrastVerdict, StudyArmComparison, StudyArmContrast, StudyConditionSummary};
+use crate::arm_comparison::{
+    ContrastDoubt, ContrastVerdict, FEW_EVENTS, StudyArmComparison, StudyArmContrast, StudyConditionSummary,
+};
 use crate::figures::StudySummary;
 use tomcom_core::base::text::count;
 use tomcom_core::measures::raters::BeliefSource;
@@ -77,7 +79,50 @@ fn answer(found: &StudyArmComparison) -> String {
     };
     let text = groups.into_iter().map(words).collect::<Vec<_>>().join("; ");
     let first = text.chars().next().map_or(0, char::len_utf8);
-    format!("{}{}.", text[..first].to_uppercase(), &text[first..])
+    let doubted = found
+        .contrasts
+        .iter()
+        .find_map(|one| not_reliable(found, one))
+        .map_or(String::new(), |why| format!(" ({why})"));
+    format!("{}{}{doubted}.", text[..first].to_uppercase(), &text[first..])
+}
+
+/// That a ratio of the primary model is not reliable, to stand beside it; `None` where nothing speaks against it.
+pub(crate) fn not_reliable(found: &StudyArmComparison, one: &StudyArmContrast) -> Option<String> {
+    let ContrastDoubt { few_events, other_ratio } = one.doubt?;
+    let few = few_events.map(|_| format!("{} are few", found.outcome.title()));
+    let other = other_ratio.map(|ratio| format!("the model of counts says {ratio:.2}"));
+    Some(format!("not reliable: {}", few.into_iter().chain(other).collect::<Vec<_>>().join(", and ")))
+}
+
+/// Why ratios of the primary model are not reliable, each in a sentence with its sources.
+pub fn doubts(found: &StudyArmComparison) -> Vec<String> {
+    let outcome = found.outcome.title();
+    let of = |one: &StudyArmContrast| {
+        let ContrastDoubt { few_events, other_ratio } = one.doubt?;
+        let (arm, against) = (one.arm.title(), one.against.title());
+        let few = few_events.map(|mean| {
+            format!(
+                "{outcome} are few ({mean:.1} a trial in the condition with the fewest), and below {FEW_EVENTS} a trial a model of \
+                 logarithms of counts is biased (Bolker et al. 2009, O'Hara and Kotze 2010)"
+            )
+        });
+        let other = match found.negative_binomial.as_ref().map(|counts| counts.of(one)) {
+            Some(Some(other)) => {
+                let outside = if other_ratio.is_some() { ", outside the interval" } else { "" };
+                let (ratio, p) = (other.ratio, p_value(other.p_holm));
+                format!("the negative binomial model, which is one of counts, says {ratio:.2} ({p}){outside}")
+            }
+            _ => "the negative binomial model cannot be estimated".to_string(),
+        };
+        let why = few.into_iter().chain([other]).collect::<Vec<_>>().join("; ");
+        Some(format!(
+            "The ratio {:.2} of {arm} to {against} is not reliable: {why}. Report both models, and conclude nothing from the primary one \
+             alone.",
+            one.ratio
+        ))
+    };
+    found.contrasts.iter().filter_map(of).collect()
 }
 
 fn contrast(found: &StudyArmComparison, one: &StudyArmContrast) -> String {
@@ -92,13 +137,15 @@ fn contrast(found: &StudyArmComparison, one: &StudyArmContrast) -> String {
         true => format!("{} interval {low:.2} to {high:.2}", level(one.level)),
         false => "too few trials for an interval".to_string(),
     };
+    let alone = if one.doubt.is_some() { "by this model alone, " } else { "" };
     let verdict = match (one.verdict(), one.ratio < 1.0) {
-        (ContrastVerdict::Shown, true) => format!("fewer in {arm} trials than in {against} trials"),
-        (ContrastVerdict::Shown, false) => format!("more in {arm} trials than in {against} trials"),
+        (ContrastVerdict::Shown, true) => format!("{alone}fewer in {arm} trials than in {against} trials"),
+        (ContrastVerdict::Shown, false) => format!("{alone}more in {arm} trials than in {against} trials"),
         _ => "no difference shown".to_string(),
     };
+    let doubted = not_reliable(found, one).map_or(String::new(), |why| format!(" ({why})"));
     format!(
-        "Primary outcome, {} per 100 presses of the human: {arm} {:.1}, {against} {:.1}; ratio {:.2}, {interval}: \
+        "Primary outcome, {} per 100 presses of the human: {arm} {:.1}, {against} {:.1}; ratio {:.2}{doubted}, {interval}: \
          {verdict}{corrected}.",
         found.outcome.title(),
         rate(one.arm),
@@ -118,9 +165,10 @@ pub(crate) fn p_value(p: f64) -> String {
     if p < 0.001 { "p < 0.001".to_string() } else { format!("p = {p:.3}") }
 }
 
-/// What a reduction of a measure is, in words: "0.1 fewer", "2.3 more".
-pub(crate) fn fewer(reduction: f64) -> String {
-    format!("{:.1} {}", reduction.abs(), if reduction < 0.0 { "more" } else { "fewer" })
+/// A difference and its interval in the direction of the difference, which is positive, with the word for it: the first
+/// of two if it was positive before.
+pub(crate) fn directed(value: f64, [low, high]: [f64; 2], words: [&str; 2]) -> (f64, [f64; 2], &str) {
+    if value < 0.0 { (-value, [-high, -low], words[1]) } else { (value, [low, high], words[0]) }
 }
 
 /// Sources of causes with their numbers of trials: "the consensus of two raters in 1 trial, the assistant's estimate in 2

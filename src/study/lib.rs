@@ -68,3 +68,4 @@ pub mod study_part;
 pub mod tables;
 pub mod tournament;
 pub mod trial_statistics;
+mod why;

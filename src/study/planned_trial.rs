@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
+use crate::figures::CorrectedRecording;
 use crate::frozen_plan::RecordedPlan;
 use tomcom_core::base::text::count;
 
@@ -56,7 +57,7 @@ impl PlannedTrialKey {
             "a second recording of trial {period} of {participant} in the plan \"{plan}\", which {first} is a recording of, too"
         );
         let remedy = "one recording that counts for each trial: leave the other out (tomcom exclude RECORDING --reason …), \
-                      or correct a code that was typed wrong (tomcom correct RECORDING --code CODE --why …)";
+                      or correct a code that was typed wrong (tomcom correct RECORDING --code CODE --reason …)";
         (found, remedy.to_string())
     }
 }
@@ -225,9 +226,21 @@ impl PlanRecordings<'_> {
     }
 }
 
-pub fn in_words(missing: &[MissingTrials]) -> Option<String> {
+/// With the recordings whose codes were corrected, to which trials that are missing can belong.
+pub fn in_words(missing: &[MissingTrials], corrections: &[CorrectedRecording]) -> Option<String> {
     let of_plans: Vec<String> = missing.chunk_by(|a, b| a.plan == b.plan).filter_map(of_plan).collect();
-    (!of_plans.is_empty()).then(|| of_plans.join("; "))
+    let is_missing = |code: &String| missing.iter().any(|one| one.code.as_ref() == Some(code));
+    let moved =
+        corrections.iter().filter(|one| is_missing(&one.correction.before) || is_missing(&one.correction.after));
+    let moved: Vec<String> = moved.map(|one| format!("{} ({})", one.recording, one.correction.codes())).collect();
+    let moved = match moved.is_empty() {
+        true => String::new(),
+        false => format!(
+            "; codes were corrected of: {}; tomcom correct RECORDING --undo takes a correction back",
+            moved.join(", ")
+        ),
+    };
+    (!of_plans.is_empty()).then(|| of_plans.join("; ") + &moved)
 }
 
 /// The missing trials of one plan.
@@ -250,6 +263,10 @@ impl MissingTrials {
     fn describe(&self) -> String {
         let number = || self.participant.map_or(String::new(), |number| format!("the plan's participant {number}"));
         let who = self.code.clone().unwrap_or_else(number);
+        let who = match self.participant {
+            Some(_) => who,
+            None => format!("{who} (a corrected code, perhaps none of the plan)"),
+        };
         let trials: Vec<String> = self.trials.iter().map(u32::to_string).collect();
         match &trials[..] {
             [one] => format!("{who} trial {one}"),

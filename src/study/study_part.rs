@@ -12,7 +12,7 @@
 //! the mixed models and the bootstrap need trials, the kappa of wizard and assistant needs both lanes of signals, the
 //! tables of events need their rows.
 //!
-//! A part is a file of JSON Lines: a [`PartHeader`], the [`PartKitchen`], then for each recording a line with the
+//! A part is a file of JSON Lines: a [`PartHeader`], [`PartShared`], then for each recording a line with the
 //! [`AnalysedRecording`] and a line with the recording's rows (an array of five texts, empty with `--skip events`). The
 //! format belongs to the program's version.
 
@@ -21,7 +21,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::{Deserialize, Serialize};
 
 use crate::facts::RecordingFacts;
-use crate::frozen_plan::RecordedPlan;
+use crate::frozen_plan::{PlanVersions, RecordedPlan};
 use crate::pass::reading::{RecordedConsent, WaivedPractice};
 use crate::planned_trial::{ForeignRecording, PlannedTrialKey, RecordingCopy};
 use crate::tables::participants::TutorialQuestionRow;
@@ -29,7 +29,7 @@ use crate::trial_statistics::{TrialDetails, TrialStatistics};
 use tomcom_session::header::{CodeCorrection, RecordedFile};
 use tomcom_session::plan::PlanPosition;
 
-pub(crate) const PART_FORMAT: u32 = 6;
+pub(crate) const PART_FORMAT: u32 = 7;
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -51,8 +51,14 @@ pub struct PartHeader {
     pub plans: BTreeSet<(String, String)>,
 }
 
-/// The second line of a part's file: layout and recipes of the kitchen; `None` in a part without recordings.
-pub type PartKitchen = Option<[RecordedFile; 2]>;
+/// The second line of a part's file.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PartShared {
+    /// Layout and recipes of the kitchen; `None` in a part without recordings.
+    pub kitchen: Option<[RecordedFile; 2]>,
+    pub versions: PlanVersions,
+}
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -7,6 +7,7 @@ subtitles by ffmpeg; and codes that raters give there, taken back.
 import csv
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -97,6 +98,19 @@ def check_vtt(recording, number):
     assert "errors: error 1: " in done.stdout and "presses human: " in done.stdout
 
 
+def check_ends(recording, errors):
+    """An error begins and ends at the same times in ELAN's file, in the subtitles and in `tomcom review --errors`, to the millisecond."""
+    seconds = lambda text: sum(60**place * float(part) for place, part in enumerate(reversed(text.split(":"))))
+    cues = re.findall(r"(\S+) --> (\S+)\nerrors: error (\d+): ", (recording / "recording.vtt").read_text())
+    assert [round(1000 * seconds(begin)) for begin, *_ in cues] == [begin for begin, *_ in errors]
+    assert [round(1000 * seconds(end)) for _, end, _ in cues] == [end for _, end, _ in errors]
+    done = subprocess.run([TOMCOM, "review", recording, "--errors"], capture_output=True, text=True, check=True)
+    told = re.findall(r"--at (\S+)  # to (\S+|the end), error ", done.stdout)
+    assert len(told) == len(errors), done.stdout
+    for (begin, end), (first, last, _) in zip(told, errors):
+        assert end == "the end" or abs(1000 * (seconds(end) - seconds(begin)) - (last - first)) < 1.5, (begin, end, first, last)
+
+
 def coded(recording, rater):
     out = recording.parent.parent / "codes.csv"
     out.unlink(missing_ok=True)
@@ -114,6 +128,7 @@ def main():
     assert len(errors) >= 2 and errors[0][2].startswith("error 1: "), errors
     check_boris(recording, errors)
     check_vtt(recording, told[2]["annotations"])
+    check_ends(recording, errors)
     print(f"ELAN by pympi-ling: {told[0]['annotations']} annotations on {len(list(elan.get_tier_names()))} tiers, films linked", flush=True)
 
     # A rater codes in ELAN, another in BORIS; exports that were changed there are kept.

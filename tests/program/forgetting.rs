@@ -156,7 +156,7 @@ fn rows_from_before_a_code_was_corrected_go_with_the_recording() {
     let lab = RecordingsFolder::of_two_people("corrected");
     lab.study();
     let recording = lab.at("seed1-P01-1").display().to_string();
-    ended(lab.run(&["correct", &recording, "--code", "P88", "--why", "typed wrong"]), 0, &[]);
+    ended(lab.run(&["correct", &recording, "--code", "P88", "--reason", "typed wrong"]), 0, &[]);
     ended(lab.forget(&["P88", "--yes"]), 0, &[]);
     for table in ["actions", "trials"] {
         let left = lab.text(&format!("study/{table}.csv"));

@@ -96,7 +96,7 @@ fn a_plan_is_frozen_once_and_the_study_says_whether_it_is_that_one() {
     };
     let text = study(&[]);
     assert!(text.contains("Preregistered: the plan \"paper\" was frozen when no recording of it was there"), "{text}");
-    assert!(text.contains(&digest), "{text}");
+    assert!(text.contains(&format!("SHA-256 {}…", &digest[..12])), "{text}");
     let report = fs::read_to_string(Path::new(&recordings).join("study/report.html")).expect("a report");
     assert!(report.contains("Preregistered") && report.contains(&digest), "the report says so");
     fs::remove_dir_all(Path::new(&recordings).join("seed1-P03-2")).expect("removed");
@@ -116,6 +116,33 @@ fn a_plan_is_frozen_once_and_the_study_says_whether_it_is_that_one() {
             refused(&["operate", &plan, "--code", "P01", "--frozen", &file], &told);
         }
     }
+    // What differs is told setting by setting, also of recordings under another version.
+    fs::write(&plan, session.replacen("presses = 40", "presses = 41", 1)).expect("written");
+    let others = at("others");
+    done(&["simulate", &plan, "--trials", "2", "--out", &others]);
+    let text = done(&["study", &others, "--skip", "concepts,events", "--frozen", &file]);
+    assert!(text.contains("which changed since: trial.presses from 40 to 41. "), "{text}");
+    let part = at("part.jsonl");
+    done(&["study", &others, "--skip", "concepts,events", "--shard", "1/1", "--out", &part]);
+    let joined = done(&["study", "--from", &part, "--out", &at("joined"), "--frozen", &file]);
+    assert!(joined.contains("which changed since: trial.presses from 40 to 41. "), "{joined}");
+    // A code outside of the plan is told when it is set, and again where its trials are missed.
+    let moved = Path::new(&others).join("seed1-P01-1").display().to_string();
+    let correct = |code: &str| {
+        let output = tomcom(&["correct", &moved, "--code", code, "--reason", "typed wrong"]);
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    assert!(correct("P07").contains("no other recording of the plan \"paper\""), "the plan is not there");
+    fs::copy(&plan, Path::new(&others).join("short.toml")).expect("copied");
+    let told = correct("P11");
+    assert!(
+        told.contains("P11 is no participant of the plan \"paper\"") && told.contains("did you mean P01?"),
+        "{told}"
+    );
+    assert!(told.contains("has no recording of trial 1 of P07 any more"), "{told}");
+    let text = done(&["study", &others, "--skip", "concepts,events"]);
+    assert!(text.contains("P11 (a corrected code, perhaps none of the plan) trial 2"), "{text}");
+    assert!(text.contains("seed1-P01-1 (P01 is P11); tomcom correct RECORDING --undo"), "{text}");
     fs::write(&plan, &session).expect("written");
     let text = fs::read_to_string(&file).expect("frozen");
     fs::write(&file, text.replacen("\"level\": 0.95", "\"level\": 0.90", 1)).expect("written");

@@ -10,8 +10,11 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-import numpy
-import pandas
+try:
+    import numpy
+    import pandas
+except ModuleNotFoundError as missing:
+    raise ModuleNotFoundError(f"{missing.name}, by which tomcom reads recordings, is not installed: pip install pandas", name=missing.name) from None
 
 Event = dict[str, Any]
 

@@ -38,6 +38,22 @@ pub fn percent(share: Option<f64>) -> String {
     share.map_or("-".to_string(), |share| format!("{:.1} %", 100.0 * share))
 }
 
+/// Largest number of wrong letters in a mistyped name for which another is suggested.
+const MOST_EDITS: usize = 2;
+
+/// The name that is nearest to a mistyped one; at least half of the letters must be right. `None` if no name is near.
+pub fn nearest<Name: AsRef<str>>(mistyped: &str, names: impl IntoIterator<Item = Name>) -> Option<Name> {
+    let most = MOST_EDITS.min(mistyped.chars().count() / 2);
+    let edits = |name: Name| (strsim::osa_distance(mistyped, name.as_ref()), name);
+    let near = names.into_iter().map(edits).filter(|(edits, _)| *edits <= most);
+    near.min_by(|a, b| (a.0, a.1.as_ref()).cmp(&(b.0, b.1.as_ref()))).map(|(_, name)| name)
+}
+
+/// "; did you mean rice?"; empty if no name is near.
+pub fn did_you_mean<Name: AsRef<str>>(mistyped: &str, names: impl IntoIterator<Item = Name>) -> String {
+    nearest(mistyped, names).map_or(String::new(), |name| format!("; did you mean {}?", name.as_ref()))
+}
+
 /// The text in one line. Control characters, directional formatting characters and line separators are escaped as in
 /// JSON (`\u001b`, `\n`).
 pub fn printable(text: &str) -> Cow<'_, str> {

@@ -25,6 +25,16 @@ impl SessionTime {
         self.0 as f64 / 1e9
     }
 
+    /// Whole milliseconds since the session began. As on every clock here, what is smaller is left out.
+    pub fn ms(self) -> u64 {
+        self.0 / 1_000_000
+    }
+
+    /// To the millisecond: `6:42.305`.
+    pub fn with_ms(self) -> String {
+        format!("{self}.{:03}", self.ms() % 1000)
+    }
+
     /// Seconds from the session time `earlier` to this time; zero if `earlier` is later.
     pub fn secs_since(self, earlier: SessionTime) -> f64 {
         (self - earlier).as_secs_f64()

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::attribution::{ErrorCause, FalseBeliefTarget};
 use super::errors::JudgedPress;
 use super::matching::kappa;
+use crate::base::text::did_you_mean;
 use crate::kitchen::{Kitchen, State};
 
 /// Cause of an error as coded by a rater.
@@ -161,7 +162,8 @@ impl CodableErrors {
             return Some((format!("press {press}, which was no error"), self.nearest(press)));
         }
         let aspect = code.aspect().filter(|aspect| !self.places.iter().any(|place| place == aspect))?;
-        Some((format!("the aspect \"{aspect}\""), format!("one of {}", self.places.join(", "))))
+        let found = format!("the aspect \"{aspect}\"{}", did_you_mean(aspect, &self.places));
+        Some((found, format!("one of {}", self.places.join(", "))))
     }
 
     fn nearest(&self, press: u64) -> String {

@@ -375,7 +375,7 @@ fn percent(held: &Held) -> String {
 
 /// A time on the trial's clock as the console shows it, and as the viewer does: "1:25.6 (+85.619s)".
 fn in_both_clocks(time: SessionTime) -> String {
-    let ms = time.0 / 1_000_000;
+    let ms = time.ms();
     format!("{} (+{}.{:03}s)", moment_on_clock(time), ms / 1000, ms % 1000)
 }
 

@@ -9,6 +9,7 @@ use crate::SessionSpec;
 use crate::files::file_error::{FileError, FileResult};
 use crate::questionnaire::Questionnaire;
 use crate::tutorial::Tutorial;
+use tomcom_core::base::text::did_you_mean;
 use tomcom_core::kitchen::files::LayoutSpec;
 use tomcom_core::kitchen::files::RecipesSpec;
 use tomcom_core::mind::model::HumanModel;
@@ -119,10 +120,14 @@ fn told<T: DeserializeOwned>(text: &str, error: &toml::de::Error) -> (String, Op
         if let Some(place) = unknown.and_then(|name| Some(format!("{name} {}", places_of::<T>(name)?))) {
             return (found.to_string(), Some(place));
         }
-        let found = error.span().filter(|_| unknown.is_none()).and_then(|span| Some((setting_at(text, span)?, found)));
+        if let Some(name) = unknown {
+            return (format!("{found}{}", did_you_mean(name, names_in(expected))), Some(type_name(expected)));
+        }
+        let found = error.span().and_then(|span| Some((setting_at(text, span)?, found)));
         return match found {
             Some((setting, found)) if found.starts_with("unknown variant ") => {
-                (format!("{setting}, which is not known"), Some(type_name(expected)))
+                let near = did_you_mean(found.split('`').nth(1).unwrap_or_default(), names_in(expected));
+                (format!("{setting}, which is not known{near}"), Some(type_name(expected)))
             }
             Some((setting, _)) => (setting, Some(type_name(expected))),
             None => (message.split(", expected ").next().unwrap_or(message).to_string(), Some(type_name(expected))),
@@ -221,5 +226,10 @@ fn settings_of<T: DeserializeOwned>(table: &str) -> Option<Vec<String>> {
     let header = if table.is_empty() { String::new() } else { format!("[{table}]\n") };
     let error = toml::from_str::<T>(&format!("{header}{NOBODY} = 0\n")).err()?;
     let expected = error.message().strip_prefix(&format!("unknown field `{NOBODY}`, expected "))?;
-    Some(expected.split('`').skip(1).step_by(2).map(str::to_string).collect())
+    Some(names_in(expected).map(str::to_string).collect())
+}
+
+/// The names in what a parser expected: "one of `tau`, `lapse`".
+fn names_in(expected: &str) -> impl Iterator<Item = &str> {
+    expected.split('`').skip(1).step_by(2)
 }

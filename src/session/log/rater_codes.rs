@@ -10,8 +10,7 @@ use crate::files::file_error::{FileError, FileResult, MAX_TEXT, open_regular, re
 use crate::files::{overwrite, replace_file};
 use crate::log::RecordingWriteError;
 use crate::person_code;
-use tomcom_core::base::text::SEPARATORS;
-use tomcom_core::base::text::count;
+use tomcom_core::base::text::{SEPARATORS, count, did_you_mean};
 use tomcom_core::measures::raters::{CodableErrors, ErrorCauseCode, ErrorCauseKind, RaterCodes};
 
 /// Of one rater's file, which says whose codes it has, since its name can change when it is copied; an export has one
@@ -96,7 +95,8 @@ pub fn check_named(what: &Path, named: &[String; 2], raters: &BTreeSet<String>) 
         true => "two raters who have coded the errors, each with tomcom replay RECORDING --rater CODE".to_string(),
         false => format!("two raters who have coded the errors; there are codes of {}", known.join(", ")),
     };
-    Err(FileError::from_finding(what, format!("no codes of the rater {missing}"), remedy))
+    let found = format!("no codes of the rater {missing}{}", did_you_mean(missing, known));
+    Err(FileError::from_finding(what, found, remedy))
 }
 
 /// By the rater whom each file names inside; files without a row are nobody's.
@@ -270,7 +270,9 @@ pub(super) fn rows(path: &Path, text: &str, columns: &[&str]) -> FileResult<Vec<
     }
     if head != columns {
         let remedy = format!("the columns {}", columns.join(","));
-        return Err(wrong_line(path, text, 1, format!("the columns {}", head.join(",")), &remedy));
+        let strange = head.iter().find(|name| !columns.contains(&name.as_str()));
+        let near = strange.map_or(String::new(), |name| did_you_mean(name, columns));
+        return Err(wrong_line(path, text, 1, format!("the columns {}{near}", head.join(",")), &remedy));
     }
     let mut rows: Vec<ParsedRow> = Vec::new();
     let mut lines = BTreeMap::new();
@@ -305,7 +307,9 @@ fn said(press: &str, cause: &str, aspect: &str) -> Result<(u64, ErrorCauseCode),
 
 pub(super) fn code_of(cause: &str, aspect: &str) -> Result<ErrorCauseCode, (String, &'static str)> {
     let kind = ErrorCauseKind::named(cause);
-    let kind = kind.ok_or_else(|| (format!("the cause \"{cause}\""), "belief, slip, race, other or buttons"))?;
+    let near = || did_you_mean(cause, ErrorCauseKind::ALL.map(ErrorCauseKind::name));
+    let kind =
+        kind.ok_or_else(|| (format!("the cause \"{cause}\"{}", near()), "belief, slip, race, other or buttons"))?;
     let code = ErrorCauseCode::new(kind, Some(aspect).filter(|aspect| !aspect.is_empty()));
     let remedy = "the location that is believed wrong with \"belief\", and none with other causes";
     code.ok_or_else(|| (format!("the cause \"{cause}\" with the aspect \"{aspect}\""), remedy))

@@ -12,8 +12,8 @@ mod study;
 
 use crate::person_code;
 pub use crate::plan::study::{
-    NextRecording, ParticipantProgress, PhaseStand, PlanRecording, PlannedTrial, PlannedTrialProgress,
-    RecordingOutcome, Study, TrialAttempt, WantedRecording, what_can_change_a_trial,
+    NextRecording, ParticipantProgress, PhaseStand, PlanDifference, PlanRecording, PlannedTrial, PlannedTrialProgress,
+    RecordingOutcome, Study, TrialAttempt, WantedRecording, differences, listed,
 };
 use crate::protocol::StudyPhase;
 pub use crate::questionnaire::{

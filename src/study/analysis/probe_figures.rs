@@ -5,8 +5,10 @@ use serde::Serialize;
 
 use crate::analysis::probe_detection::{ProbeDetection, ProbeLogScores, WeightedProbeBelief};
 use crate::analysis::probe_record::{ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial, weighted_share};
+use crate::headline::directed;
 use crate::statistics::interval_where_known;
-use tomcom_core::base::text::{count, decimal, percent};
+use crate::why::{self, decimal, percent};
+use tomcom_core::base::text::count;
 use tomcom_core::measures::raters::BeliefSource;
 use tomcom_session::probes::ProbeOrigin;
 use tomcom_session::study_arm::StudyArm;
@@ -340,21 +342,21 @@ pub fn describe(found: &ProbeSummary) -> String {
         counts.unanswered,
         counts.by_wizard,
         counts.level_2,
-        percent(found.accuracy.accuracy),
+        percent(found.accuracy.accuracy, why::NO_ANSWER),
         interval_text(found.accuracy.interval, 100.0, 1),
-        decimal(detection.auc, 3),
+        decimal(detection.auc, 3, why::ONE_KIND),
         interval_text(found.auc_interval, 1.0, 3),
-        decimal(detection.auc_locations, 3),
-        decimal(detection.auc_baseline, 3),
-        decimal(detection.auc_recipes, 3),
-        decimal(found.auc_unweighted, 3),
-        decimal(detection.ece, 3),
+        decimal(detection.auc_locations, 3, why::ONE_KIND),
+        decimal(detection.auc_baseline, 3, why::ONE_KIND),
+        decimal(detection.auc_recipes, 3, why::ONE_KIND),
+        decimal(found.auc_unweighted, 3, why::ONE_KIND),
+        decimal(detection.ece, 3, why::UNCALIBRATED),
         interval_text(found.ece_interval, 1.0, 3),
-        decimal(scores.estimate, 3),
-        decimal(scores.estimate_with_slips, 3),
-        decimal(scores.usual, 3),
-        decimal(scores.last_seen, 3),
-        decimal(scores.truth, 3),
+        decimal(scores.estimate, 3, why::NO_VALUE),
+        decimal(scores.estimate_with_slips, 3, why::NO_VALUE),
+        decimal(scores.usual, 3, why::NO_VALUE),
+        decimal(scores.last_seen, 3, why::NO_VALUE),
+        decimal(scores.truth, 3, why::NO_VALUE),
     );
     text + &describe_accuracies(found)
 }
@@ -369,30 +371,33 @@ fn describe_accuracies(found: &ProbeSummary) -> String {
         ProbeAccuracyGrouping::Condition,
     ];
     for one in found.accuracies.iter().filter(|one| told.contains(&one.by)) {
-        let share = percent(one.accuracy);
+        let share = percent(one.accuracy, why::NO_ANSWER);
         text += &format!("  {:<44}{share:>8}{} of {}\n", one.group, interval_text(one.interval, 100.0, 1), one.n);
     }
     if let Some(effect) = &found.assistance {
+        let ends = effect.interval.unwrap_or([f64::NAN; 2]);
+        let (difference, ends, more) = directed(effect.difference, ends, ["more", "fewer"]);
         text += &format!(
-            "assistance: {:+.1} % right answers{} within {}\n",
-            100.0 * effect.difference,
-            interval_text(effect.interval, 100.0, 1),
+            "assistance: {:.1} % {more} right answers{} within {}\n",
+            100.0 * difference,
+            interval_text(effect.interval.map(|_| ends), 100.0, 1),
             count(effect.participants, "participant", "participants"),
         );
     }
     for one in &found.level_2 {
-        text += &format!("what comes next: {}: {} right of {}\n", one.group, percent(one.accuracy), one.n);
+        text +=
+            &format!("what comes next: {}: {} right of {}\n", one.group, percent(one.accuracy, why::NO_ANSWER), one.n);
     }
     if let Some(known) = &found.by_true_beliefs {
         text += &format!(
             "by the recorded beliefs at {} of these questions: area {}, calibration error {}; by their answers {} and {}; {} of the \
              answers agree\n",
             known.n,
-            decimal(known.detection.auc, 3),
-            decimal(known.detection.ece, 3),
-            decimal(known.by_answers.auc, 3),
-            decimal(known.by_answers.ece, 3),
-            percent(Some(known.agreement)),
+            decimal(known.detection.auc, 3, why::ONE_KIND),
+            decimal(known.detection.ece, 3, why::UNCALIBRATED),
+            decimal(known.by_answers.auc, 3, why::ONE_KIND),
+            decimal(known.by_answers.ece, 3, why::UNCALIBRATED),
+            percent(Some(known.agreement), ""),
         );
     }
     text

@@ -2,6 +2,7 @@
 
 pub mod annotation_files;
 pub mod bids_tree;
+pub mod corrected;
 pub mod export;
 pub mod new_folder;
 pub mod pool_file;

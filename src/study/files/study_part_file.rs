@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::study_part::{AnalysedRecording, PART_FORMAT, PartHeader, PartKitchen};
+use crate::study_part::{AnalysedRecording, PART_FORMAT, PartHeader, PartShared};
 use tomcom_session::files::file_error::{FileError, FileResult, open_regular};
 use tomcom_session::files::overwrite;
 use tomcom_session::files::replace_file::Replacement;
@@ -28,7 +28,7 @@ pub struct PartWriter {
 impl PartWriter {
     /// Begins the file of a part. An earlier file with the same part of the study is replaced. Errors: there is a file
     /// at the path that is not this part, or the folder cannot be written to.
-    pub fn create(path: &Path, header: &PartHeader, kitchen: &PartKitchen) -> FileResult<PartWriter> {
+    pub fn create(path: &Path, header: &PartHeader, shared: &PartShared) -> FileResult<PartWriter> {
         let unwritable = |reason| FileError::unwritable(path, reason);
         let is_own = |head: &[u8]| {
             let there = serde_json::from_slice::<PartHeader>(overwrite::first_line(head));
@@ -38,7 +38,7 @@ impl PartWriter {
         let file = Replacement::begin(path).map_err(unwritable)?;
         let mut part = PartWriter { path: path.to_path_buf(), file };
         part.line(header)?;
-        part.line(kitchen)?;
+        part.line(shared)?;
         Ok(part)
     }
 
@@ -65,7 +65,7 @@ impl PartWriter {
 #[derive(Debug)]
 pub struct PartReader {
     pub header: PartHeader,
-    pub kitchen: PartKitchen,
+    pub shared: PartShared,
     path: PathBuf,
     lines: BufReader<File>,
     number: usize,
@@ -91,8 +91,8 @@ impl PartReader {
         }
         let cut = || FileError::from_finding(&path, "the end after the first line".to_string(), REMEDY.to_string());
         let text = next_line(&path, &mut lines, &mut number)?.ok_or_else(cut)?;
-        let kitchen = parsed(&path, number, &text)?;
-        Ok(PartReader { header, kitchen, path, lines, number })
+        let shared = parsed(&path, number, &text)?;
+        Ok(PartReader { header, shared, path, lines, number })
     }
 
     pub fn path(&self) -> &Path {

@@ -21,7 +21,7 @@ use crate::facts::RecordingFacts;
 use crate::figures::{CorrectedRecording, StudySummary};
 use crate::files::export::{AnalysisFolder, AnalysisWriteError};
 use crate::files::pool_file::read_frozen;
-use crate::frozen_plan::{FrozenPlan, PreregistrationCheck, RecordedPlan};
+use crate::frozen_plan::{FrozenPlan, PlanVersions, PreregistrationCheck, RecordedPlan};
 use crate::gathered::{GatheredPlace, GatheredRecordings, name};
 use crate::kept_cost::KeptCost;
 use crate::pass::reading::{AnalysisScope, RecordedConsent, WaivedPractice};
@@ -35,7 +35,7 @@ use crate::tables::participants::{
 use crate::tables::probe_table::probes;
 use crate::trial_statistics::{DetailTotals, TrialStatistics, arrange};
 use crate::{parallel, report};
-use tomcom_core::base::text::count;
+use tomcom_core::base::text::{count, did_you_mean};
 use tomcom_core::kitchen::Kitchen;
 use tomcom_session::event::TrialEndReason;
 use tomcom_session::files::file_error::FileError;
@@ -110,6 +110,14 @@ impl NamedRecordings {
         }
     }
 
+    fn versions(&self) -> Result<PlanVersions, FileError> {
+        let mut versions = PlanVersions::default();
+        for (path, name) in &self.found {
+            versions.add(name, &LogReader::open(path)?.header);
+        }
+        Ok(versions)
+    }
+
     pub fn number(&self) -> usize {
         self.found.len()
     }
@@ -124,7 +132,7 @@ fn check_plans(places: &[GatheredPlace], wanted: &[String]) -> Result<(), (Strin
     let one = |(plan, number): (&&str, &u64)| format!("\"{plan}\" ({})", count(*number, "recording", "recordings"));
     let there = || numbers.iter().map(one).collect::<Vec<_>>().join(", ");
     if let Some(missing) = wanted.iter().find(|plan| !numbers.contains_key(plan.as_str())) {
-        let found = format!("no recording of the plan \"{missing}\"");
+        let found = format!("no recording of the plan \"{missing}\"{}", did_you_mean(missing, numbers.keys()));
         let there = if numbers.is_empty() { "these recordings are of no plan".to_string() } else { there() };
         return Err((found, format!("a plan that has recordings there: {there}")));
     }
@@ -142,7 +150,7 @@ fn check_plans(places: &[GatheredPlace], wanted: &[String]) -> Result<(), (Strin
         let other = *codes.entry(code).or_insert(plan);
         if other != plan {
             let found = format!("recordings of {code} in the plan \"{other}\" and in the plan \"{plan}\"");
-            let remedy = "codes that differ between the plans (tomcom correct RECORDING --code CODE --why …): one code is one \
+            let remedy = "codes that differ between the plans (tomcom correct RECORDING --code CODE --reason …): one code is one \
                           participant; or one plan";
             return Err((found, remedy.to_string()));
         }
@@ -170,6 +178,7 @@ pub fn study(
     };
     parallel::each_with(&numbered, KeptCost::default, work, done).into_iter().collect::<Result<(), StudyError>>()?;
     let left = (recordings.copies.clone(), recordings.foreign.clone());
+    let frozen = frozen.map(|frozen| Ok::<_, FileError>((frozen, recordings.versions()?))).transpose()?;
     conclude(numbered.len(), &export, analysis.extent, frozen, left)
 }
 
@@ -258,7 +267,7 @@ fn conclude(
     number: usize,
     export: &AnalysisFolder,
     extent: AnalysisScope,
-    frozen: Option<(String, FrozenPlan)>,
+    frozen: Option<((String, FrozenPlan), PlanVersions)>,
     (copies, foreign): (Vec<RecordingCopy>, Vec<ForeignRecording>),
 ) -> Result<(StudySummary, PathBuf), StudyError> {
     let CollectedRecordings {
@@ -283,7 +292,8 @@ fn conclude(
     let is_ended = |trial: &&TrialStatistics| trial.counts() && trial.ended == Some(TrialEndReason::Wizard);
     let ended = trials.iter().filter(is_ended).count() as u64;
     let figures = StudySummary {
-        preregistration: frozen.map(|(digest, frozen)| PreregistrationCheck::new(digest, &frozen, &plans, ended)),
+        preregistration: frozen
+            .map(|((digest, frozen), versions)| PreregistrationCheck::new(digest, &frozen, &plans, &versions, ended)),
         missing_trials: missing_trials(&plans),
         copies,
         foreign,

@@ -12,13 +12,16 @@ use std::sync::Arc;
 use crate::figures::StudySummary;
 use crate::files::export::AnalysisFolder;
 use crate::files::study_part_file::{PartReader, PartWriter};
-use crate::frozen_plan::RecordedPlan;
+use crate::frozen_plan::{PlanVersions, RecordedPlan};
 use crate::kept_cost::KeptCost;
 use crate::parallel::{self, WorkerPool};
 use crate::pass::reading::AnalysisScope;
 use crate::pass::{AnalysisRequest, NamedRecordings, StudyError, analyse, conclude, frozen, keep, no_recording};
 use crate::planned_trial::{ForeignRecording, PlannedTrialKey, RecordingCopy, differing_copy, mixed_kinds};
-use crate::study_part::{AnalysedRecording, PART_FORMAT, PartAnalysisOptions, PartHeader, check_parts, trial_index};
+use crate::study_part::{
+    AnalysedRecording, PART_FORMAT, PartAnalysisOptions, PartHeader, PartShared, check_parts, trial_index,
+};
+use tomcom_session::LogHeader;
 use tomcom_session::files::compile_kitchen;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::headless::SimulationShard;
@@ -31,14 +34,14 @@ const BLOCK: usize = 32;
 
 struct RecordingPlace {
     is_own: bool,
-    plan: Option<(String, String)>,
+    header: LogHeader,
 }
 
 impl RecordingPlace {
     fn read(recording: &Path, shard: SimulationShard) -> FileResult<RecordingPlace> {
         let header = LogReader::open(recording)?.header;
         let is_own = trial_index(header.session.step.as_ref(), header.trial) % shard.of == shard.number - 1;
-        Ok(RecordingPlace { is_own, plan: RecordedPlan::from_header(&header).plan })
+        Ok(RecordingPlace { is_own, header })
     }
 }
 
@@ -59,11 +62,13 @@ pub fn analyse_shard(
         None => recordings.raters(analysis)?,
     };
     let (mut own, mut plans, mut left_out) = (Vec::new(), BTreeSet::new(), BTreeSet::new());
+    let mut versions = PlanVersions::default();
     for (recording, place) in recordings.found.into_iter().zip(places) {
         let place = place?;
         if place.is_own {
+            plans.extend(RecordedPlan::from_header(&place.header).plan);
+            versions.add(&recording.1, &place.header);
             own.push(recording);
-            plans.extend(place.plan);
         } else {
             left_out.insert(recording.1);
         }
@@ -83,12 +88,12 @@ pub fn analyse_shard(
         plans,
     };
     let Some((first, _)) = own.first() else {
-        PartWriter::create(&analysis.out, &header, &None)?.finish()?;
+        PartWriter::create(&analysis.out, &header, &PartShared::default())?.finish()?;
         return Ok(0);
     };
     let log = LogReader::open(first)?;
-    let texts = Some([log.header.layout.clone(), log.header.recipes.clone()]);
-    let mut part = PartWriter::create(&analysis.out, &header, &texts)?;
+    let kitchen = Some([log.header.layout.clone(), log.header.recipes.clone()]);
+    let mut part = PartWriter::create(&analysis.out, &header, &PartShared { kitchen, versions })?;
     let workers = WorkerPool::new(KeptCost::default);
     let work = |kept: &mut KeptCost, recording: &(PathBuf, String)| {
         analyse(recording, (analysis.extent, raters.as_ref()), (first, &log.kitchen), kept)
@@ -115,7 +120,7 @@ pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), Study
         .map_err(|wrong| FileError::from_finding(parts[wrong.index].path(), wrong.found, wrong.remedy))?;
     let mut kitchen = SameKitchenCheck::default();
     for part in &parts {
-        if let Some([layout, recipes]) = &part.kitchen {
+        if let Some([layout, recipes]) = &part.shared.kitchen {
             let own = compile_kitchen(
                 (layout.path.as_ref(), layout.text.clone()),
                 (recipes.path.as_ref(), recipes.text.clone()),
@@ -126,8 +131,9 @@ pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), Study
     let PartAnalysisOptions { concepts, events, .. } = headers[0].analysis.clone();
     let extent = AnalysisScope { concepts, events };
     let export = AnalysisFolder::create(&analysis.out)?;
-    let mut joined = JoinedRecordings::default();
+    let (mut joined, mut versions) = (JoinedRecordings::default(), PlanVersions::default());
     for part in &mut parts {
+        versions.join(&part.shared.versions);
         joined.copies.extend(part.header.copies.iter().cloned());
         joined.foreign.extend(part.header.foreign.iter().cloned());
         while let Some((recording, rows)) = part.next_recording()? {
@@ -153,7 +159,7 @@ pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), Study
         rater_codes::check_named(Path::new("--raters"), named, &raters)?;
     }
     let left = (copies.into_iter().collect(), foreign.into_iter().collect());
-    conclude(number, &export, extent, frozen, left)
+    conclude(number, &export, extent, frozen.map(|frozen| (frozen, versions)), left)
 }
 
 /// The recordings of a study's parts. Parts of different folders can have copies, or the same trial.

@@ -4,12 +4,15 @@ use crate::analysis::probe_figures;
 use crate::arm_comparison::StudyArmComparison;
 use crate::effect::{AssistanceEffect, LeftOutParticipant, left_out_in_words};
 use crate::figures::{StudySummary, pairs_in_words};
-use crate::headline::{RATES_AND_RATIO, fewer, level, mixed_sources, p_value, primary_outcome};
+use crate::headline::{
+    RATES_AND_RATIO, directed, doubts, level, mixed_sources, not_reliable, p_value, primary_outcome,
+};
 use crate::live_arms::SignalSenderResults;
 use crate::pass::reading::WaivedPractice;
 use crate::planned_trial::{copies_in_words, foreign_in_words, in_words};
 use crate::roc::{BootstrapInterval, EQUAL_SIGNALS};
-use tomcom_core::base::text::{count, decimal, percent};
+use crate::why::{self, percent};
+use tomcom_core::base::text::{count, decimal};
 use tomcom_core::measures::matching::{MatchShares, Similarity};
 use tomcom_core::measures::raters::BeliefSource;
 use tomcom_session::event::TrialEndReason;
@@ -31,8 +34,8 @@ pub fn describe(figures: &StudySummary) -> String {
         totals.human_actions,
         totals.robot_actions,
         totals.errors,
-        percent(totals.error_rate),
-        percent(totals.error_rate_human),
+        percent(totals.error_rate, why::NO_PRESS),
+        percent(totals.error_rate_human, why::NO_PRESS),
     );
     if totals.unproven > 0 {
         text += &format!(
@@ -42,7 +45,8 @@ pub fn describe(figures: &StudySummary) -> String {
     }
     text += &foreign_in_words(&figures.foreign).map_or(String::new(), |foreign| format!("{foreign}\n"));
     text += &figures.preregistration.as_ref().map_or(String::new(), |found| format!("{}\n", found.words()));
-    text += &in_words(&figures.missing_trials).map_or(String::new(), |missing| format!("{missing}\n"));
+    text += &in_words(&figures.missing_trials, &figures.corrections)
+        .map_or(String::new(), |missing| format!("{missing}\n"));
     for one in &figures.corrections {
         text += &format!("{}\n", one.in_words());
     }
@@ -56,21 +60,22 @@ pub fn describe(figures: &StudySummary) -> String {
     }
     text += &copies_in_words(&figures.copies).map_or(String::new(), |copies| format!("{copies}\n"));
     text += &match (totals.belief_related_errors, totals.sequences) {
+        (Some(0), _) => format!("belief related errors: 0 of {}\n", count(totals.errors, "error", "errors")),
         (Some(related), Some(sequences)) => format!(
             "belief related errors: {related} ({}), in {} of {} errors each ({} if a sequence may mix aspects), \
              recovery after {} s{}\n",
-            percent(totals.belief_related_share),
+            percent(totals.belief_related_share, totals.why_no_share()),
             count(sequences, "sequence", "sequences"),
-            number(totals.mean_sequence_length),
-            number(totals.mean_sequence_length_any_aspect),
-            number(totals.mean_recovery_s),
+            number(totals.mean_sequence_length, totals.why_no_length()),
+            number(totals.mean_sequence_length_any_aspect, totals.why_no_length()),
+            number(totals.mean_recovery_s, totals.why_no_recovery()),
             if totals.belief_sources.keys().eq([&BeliefSource::Estimate]) {
                 "; beliefs by the assistant's estimate alone"
             } else {
                 ""
             },
         ),
-        _ => "belief related errors: not known\n".to_string(),
+        _ => format!("belief related errors: not known ({})\n", totals.why_no_rate()),
     };
     text += &mixed_sources(figures).map_or(String::new(), |(words, _)| format!("{words}\n"));
     if let Some(found) = &figures.raters {
@@ -79,10 +84,10 @@ pub fn describe(figures: &StudySummary) -> String {
             pairs_in_words(&figures.rater_pairs),
             found.same_cause,
             found.errors,
-            number(found.kappa_cause),
+            number(found.kappa_cause, why::NO_KAPPA),
             found.same_aspect,
             found.beliefs,
-            number(found.kappa_aspect)
+            number(found.kappa_aspect, why::NO_KAPPA)
         );
     }
     for one in &figures.identical_codes {
@@ -117,14 +122,18 @@ pub fn describe(figures: &StudySummary) -> String {
         let arms: Vec<String> = figures.robot.iter().map(|one| format!("{} {}", one.trials, one.kind.name())).collect();
         text += &format!("trials by the robot's arm: {}\n", arms.join(", "));
     }
+    let of = |value: Option<f64>, what: &str, why: &str| match value {
+        Some(value) => format!("{value:.2} {what}"),
+        None => why.to_string(),
+    };
     for one in &figures.conditions {
         text += &format!(
-            "  {:<18}{:>11}, errors in {} of the human's presses, {} errors per sequence, {} s per order\n",
+            "  {:<18}{:>11}, errors in {} of the human's presses, {}, {}\n",
             one.condition.title(),
             count(one.trials, "trial", "trials"),
-            percent(one.totals.error_rate_human),
-            number(one.totals.mean_sequence_length),
-            number(one.mean_order_s),
+            percent(one.totals.error_rate_human, why::NO_PRESS),
+            of(one.totals.mean_sequence_length, "errors per sequence", one.totals.why_no_length()),
+            of(one.mean_order_s, "s per order", why::NO_ORDER),
         );
     }
     text += &figures.effects.first().map_or(String::new(), of_effect);
@@ -148,14 +157,24 @@ pub fn describe(figures: &StudySummary) -> String {
             heads.join(""),
             "area"
         );
-        let shares =
-            |of: &[BootstrapInterval]| -> String { of.iter().map(|one| format!("{:>6}", number(one.value))).collect() };
+        let shares = |of: &[BootstrapInterval]| -> String {
+            of.iter().map(|one| format!("{:>6}", decimal(one.value, 2))).collect()
+        };
         for roc in &figures.roc {
-            text += &format!("  {:<10}{}{:>8}\n", roc.concept.title(), shares(&roc.at_equal_signals), number(roc.auc));
+            let area = decimal(roc.auc, 2);
+            text += &format!("  {:<10}{}{area:>8}\n", roc.concept.title(), shares(&roc.at_equal_signals));
         }
         text += "share of useless signals among these signals\n";
         for roc in &figures.roc {
             text += &format!("  {:<10}{}\n", roc.concept.title(), shares(&roc.useless_at_equal_signals));
+        }
+        let shown =
+            || figures.roc.iter().flat_map(|roc| roc.at_equal_signals.iter().chain(&roc.useless_at_equal_signals));
+        if shown().any(|one| one.value.is_none()) {
+            text += &format!("  -: {}\n", why::NO_CURVE);
+        }
+        if figures.roc.iter().any(|roc| roc.auc.is_none()) {
+            text += &format!("  - as area: {}\n", why::NO_AREA);
         }
     }
     text += &figures.probes.as_ref().map_or(String::new(), probe_figures::describe);
@@ -185,14 +204,14 @@ fn of_live(arms: &[SignalSenderResults]) -> String {
         text += &format!(
             "  {name:<14}{} errors, {} per sequence, {} orders ({} a minute), {} signals ({} useless); errors \
              prevented {} (offline {})\n",
-            number(arm.belief_related_per_100),
-            number(arm.mean_sequence_length),
+            number(arm.belief_related_per_100, why::NO_PRESS),
+            number(arm.mean_sequence_length, why::NO_SEQUENCE),
             arm.orders,
-            number(arm.orders_per_minute),
-            number(arm.interruptions_per_100),
-            number(arm.useless_per_100),
-            number(arm.prevented),
-            number(arm.prevented_offline),
+            number(arm.orders_per_minute, why::NO_PRESS),
+            number(arm.interruptions_per_100, why::NO_PRESS),
+            number(arm.useless_per_100, why::NOT_TWINNED),
+            number(arm.prevented, why::NO_REFERENCE),
+            number(arm.prevented_offline, why::NOT_OFFLINE),
         );
     }
     text
@@ -200,15 +219,19 @@ fn of_live(arms: &[SignalSenderResults]) -> String {
 
 /// At three levels. The paper does not say to which its 74 % belong.
 fn of_similarity(who: &str, found: &Similarity) -> String {
-    let level = |level: &MatchShares| format!("{} (by chance {})", number(level.recall), number(level.chance_recall));
+    let level = |level: &MatchShares| {
+        let [recall, chance] = [(level.recall, why::NO_SIGNAL), (level.chance_recall, why::NO_SHIFT)]
+            .map(|(share, why)| number(share, why));
+        format!("{recall} (by chance {chance})")
+    };
     format!(
         "{who}: {} of {} signals of the wizard matched, precision {}, kappa {}\n  recall of the same signal {}, of \
          the same kind \
          {}, of any signal then {}; the paper's 74 % is not defined further\n",
         found.matched,
         found.of_n,
-        number(found.signal.precision),
-        number(found.kappa),
+        number(found.signal.precision, why::NO_SIGNAL),
+        number(found.kappa, why::NO_KAPPA),
         level(&found.signal),
         level(&found.kind),
         level(&found.any),
@@ -220,20 +243,21 @@ fn of_effect(effect: &AssistanceEffect) -> String {
         return match effect.groups.iter().sum::<usize>() {
             0 => String::new(),
             pairs => format!(
-                "the paper's analysis of assistance, secondary: cannot be computed from {}\n",
-                count(pairs as u64, "pair of trials", "pairs of trials")
+                "the paper's analysis of assistance, secondary: cannot be computed from {}: {}\n",
+                count(pairs as u64, "pair of trials", "pairs of trials"),
+                effect.why_no_test()
             ),
         };
     };
-    let p = decimal(effect.permutation_p, 4);
+    let p = why::decimal(effect.permutation_p, 4, effect.why_no_test());
     let bounded = effect.reduction.filter(|found| found.low.is_finite() && found.high.is_finite());
     let reduction = bounded.map_or(String::new(), |found| {
+        let [estimate, low, high] = [found.estimate, found.low, found.high].map(|value| 100.0 * value);
+        let (estimate, [low, high], fewer) = directed(estimate, [low, high], ["fewer", "more"]);
         format!(
-            "{} errors per 100 presses of the human with assistance, {:.1} % interval {:.1} to {:.1} fewer (Hodges-Lehmann); ",
-            fewer(100.0 * found.estimate),
+            "{estimate:.1} {fewer} errors per 100 presses of the human with assistance, {:.1} % interval {low:.1} to {high:.1} {fewer} \
+             (Hodges-Lehmann); ",
             100.0 * found.level,
-            100.0 * found.low,
-            100.0 * found.high
         )
     });
     let [second, first] = effect.groups;
@@ -264,8 +288,9 @@ pub fn describe_arms(found: &StudyArmComparison) -> String {
     );
     for one in &found.contrasts {
         let [low, high] = one.interval;
+        let doubted = not_reliable(found, one).map_or(String::new(), |why| format!("{why}; "));
         text += &format!(
-            "  {} to {}: ratio {:.2} ({} {low:.2} to {high:.2}), t({:.1}) = {:.2}, {}, corrected by Holm: {}\n",
+            "  {} to {}: ratio {:.2} ({doubted}{} {low:.2} to {high:.2}), t({:.1}) = {:.2}, {}, corrected by Holm: {}\n",
             one.arm.title(),
             one.against.title(),
             one.ratio,
@@ -286,9 +311,10 @@ pub fn describe_arms(found: &StudyArmComparison) -> String {
             one.margin
         );
     }
+    doubts(found).iter().for_each(|sentence| text += &format!("  {sentence}\n"));
     text
 }
 
-fn number(value: Option<f64>) -> String {
-    decimal(value, 2)
+fn number(value: Option<f64>, why: &str) -> String {
+    why::decimal(value, 2, why)
 }

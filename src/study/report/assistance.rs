@@ -3,17 +3,20 @@
 use maud::{Markup, Render, html};
 
 use crate::arm_comparison::{
-    ArmAnalysis, ArmDeviation, GroupOrder, NonInferiority, StudyArmComparison, StudyArmContrast, StudyConditionSummary,
+    ArmAnalysis, ArmDeviation, GroupOrder, NegativeBinomialContrast, NonInferiority, StudyArmComparison,
+    StudyArmContrast, StudyConditionSummary,
 };
 use crate::charts;
 use crate::effect::{AssistanceEffect, LeftOutParticipant, left_out_in_words};
 use crate::figures::StudySummary;
-use crate::headline::{RATES_AND_RATIO, fewer, level, mixed_sources};
+use crate::headline::{RATES_AND_RATIO, directed, doubts, level, mixed_sources, not_reliable};
 use crate::report::elements::{
-    Captions, PageColumn, UNKNOWN, cells, keys, nothing, number, p_sentence, p_value, percent, range, with_interval,
+    Captions, PageColumn, cells, fixed, keys, known, nothing, number, p_sentence, p_value, p_words, percent, range,
+    with_interval,
 };
 use crate::statistics::FTest;
 use crate::trial_statistics::TrialStatistics;
+use crate::why;
 
 pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStatistics]) -> Markup {
     let headline = figures.effects.first();
@@ -74,17 +77,19 @@ fn conditions(captions: &mut Captions, found: &[StudyConditionSummary]) -> Marku
         ("condition", |one| one.condition.title().render()),
         ("trials", |one| one.trials.render()),
         ("errors", |one| one.totals.errors.render()),
-        ("errors per trial", |one| number(one.mean_errors, 1).render()),
-        ("per press of the human", |one| percent(one.totals.error_rate_human).render()),
-        ("per press of both", |one| percent(one.totals.error_rate).render()),
-        ("belief related", |one| percent(one.totals.belief_related_share).render()),
-        ("belief related per 100 presses", |one| number(one.totals.belief_related_per_100, 2).render()),
-        ("sequences per 100 presses", |one| number(one.totals.sequences_per_100, 2).render()),
-        ("errors per sequence", |one| number(one.totals.mean_sequence_length, 2).render()),
-        ("s to recover", |one| number(one.totals.mean_recovery_s, 1).render()),
-        ("s per order", |one| number(one.mean_order_s, 1).render()),
-        ("additional presses per order", |one| number(one.mean_additional_presses_per_order, 1).render()),
-        ("s per press", |one| number(one.mean_press_s, 2).render()),
+        ("errors per trial", |one| number(one.mean_errors, 1, "no trial")),
+        ("per press of the human", |one| percent(one.totals.error_rate_human, why::NO_PRESS)),
+        ("per press of both", |one| percent(one.totals.error_rate, why::NO_PRESS)),
+        ("belief related", |one| percent(one.totals.belief_related_share, one.totals.why_no_share())),
+        ("belief related per 100 presses", |one| {
+            number(one.totals.belief_related_per_100, 2, one.totals.why_no_rate())
+        }),
+        ("sequences per 100 presses", |one| number(one.totals.sequences_per_100, 2, one.totals.why_no_rate())),
+        ("errors per sequence", |one| number(one.totals.mean_sequence_length, 2, one.totals.why_no_length())),
+        ("s to recover", |one| number(one.totals.mean_recovery_s, 1, one.totals.why_no_recovery())),
+        ("s per order", |one| number(one.mean_order_s, 1, why::NO_ORDER)),
+        ("additional presses per order", |one| number(one.mean_additional_presses_per_order, 1, why::NO_ORDER)),
+        ("s per press", |one| number(one.mean_press_s, 2, why::ONE_PRESS)),
         ("signals", |one| one.totals.signals.render()),
     ];
     let caption = "By condition. Shares are of all presses, or errors, of a condition together, so that long trials weigh more; \
@@ -96,17 +101,18 @@ fn conditions(captions: &mut Captions, found: &[StudyConditionSummary]) -> Marku
 fn in_words(effect: &AssistanceEffect) -> Markup {
     let (Some(reduction), Some(test)) = (effect.reduction, effect.assistance()) else { return nothing() };
     let [estimate, low, high] = [reduction.estimate, reduction.low, reduction.high].map(|value| 100.0 * value);
+    let (estimate, ends, fewer) = directed(estimate, [low, high], ["fewer", "more"]);
     let interval = match low.is_finite() && high.is_finite() {
-        true => format!(", interval of {:.1} %: {} fewer", 100.0 * reduction.level, range([low, high], 1)),
+        true => format!(", interval of {:.1} %: {} {fewer}", 100.0 * reduction.level, range(ends, 1)),
         false => "; too few participants for an interval".to_string(),
     };
     let shown = if low < 0.0 && high > 0.0 { ": no difference shown" } else { "" };
     let degrees = format!("{:.0},\u{a0}{:.0}", test.df[0], test.df[1]);
     html! {
         p {
-            "The paper\u{2019}s analysis, secondary: in " (test.n) " participants " (fewer(estimate))
+            "The paper\u{2019}s analysis, secondary: in " (test.n) " participants " (fixed(estimate, 1)) " " (fewer)
             " errors per 100 presses of the human with assistance (Hodges-Lehmann" (interval) ")" (shown) ". Interaction of period and starting group: F(" (degrees) ")\u{a0}=\u{a0}"
-            (number(Some(test.f), 2)) ", " (p_sentence(Some(test.p))) "."
+            (fixed(test.f, 2)) ", " (p_sentence(test.p)) "."
         }
         "\n"
     }
@@ -118,13 +124,18 @@ fn experience(figures: &StudySummary) -> Markup {
     let Some((effect, test)) = pace.and_then(|effect| Some((effect, effect.by_period.within?))) else {
         return nothing();
     };
-    let [faster_second, faster_first] = effect.improvements.map(|seconds| number(seconds, 2));
+    let change = |(seconds, which): (Option<f64>, &str)| {
+        let (seconds, _, falls) = directed(seconds?, [0.0; 2], ["falls", "rises"]);
+        Some(format!("{falls} by {} s ({which} trial assisted)", fixed(seconds, 2)))
+    };
+    let changes: Vec<String> = effect.improvements.into_iter().zip(["second", "first"]).filter_map(change).collect();
     html! {
         p {
-            "Experience: from the first trial to the second the time between presses falls by " (faster_second) " s (second trial \
-            assisted) and " (faster_first) " s (first trial assisted); period F(" (format!("{:.0},\u{a0}{:.0}", test.df[0], test.df[1]))
-            ")\u{a0}=\u{a0}" (number(Some(test.f), 2)) ", " (p_sentence(Some(test.p))) "; assistance "
-            (p_sentence(effect.assistance().map(|test| test.p))) "; " (test.n) " participants."
+            "Experience: from the first trial to the second the time between presses " (changes.join(" and "))
+            "; period F(" (format!("{:.0},\u{a0}{:.0}", test.df[0], test.df[1]))
+            ")\u{a0}=\u{a0}" (fixed(test.f, 2)) ", " (p_sentence(test.p)) "; "
+            @if let Some(test) = effect.assistance() { "assistance " (p_sentence(test.p)) "; " }
+            (test.n) " participants."
         }
         "\n"
     }
@@ -135,23 +146,26 @@ fn tests(captions: &mut Captions, effects: &[AssistanceEffect]) -> Markup {
         ("measure (lower is better)", |effect| effect.measure.title.render()),
         ("participants", |effect| format!("{} + {}", effect.groups[0], effect.groups[1]).render()),
         ("left out", |effect| effect.left_out.len().render()),
-        ("F (interaction)", |effect| number(effect.assistance().map(|test| test.f), 2).render()),
-        ("p", |effect| p_value(effect.assistance().map(|test| test.p)).render()),
-        ("partial \u{3b7}\u{b2}", |effect| number(effect.assistance().map(|test| test.partial_eta_sq), 2).render()),
-        ("r", |effect| number(effect.pearson.map(|found| found.r), 2).render()),
-        ("p of r", |effect| p_value(effect.pearson.map(|found| found.p)).render()),
-        ("permutation p", |effect| p_value(effect.permutation_p).render()),
+        ("F (interaction)", |effect| number(effect.assistance().map(|test| test.f), 2, effect.why_no_test())),
+        ("p", |effect| p_value(effect.assistance().map(|test| test.p), effect.why_no_test())),
+        ("partial \u{3b7}\u{b2}", |effect| {
+            number(effect.assistance().map(|test| test.partial_eta_sq), 2, effect.why_no_test())
+        }),
+        ("r", |effect| number(effect.pearson.map(|found| found.r), 2, effect.why_no_test())),
+        ("p of r", |effect| p_value(effect.pearson.map(|found| found.p), effect.why_no_test())),
+        ("permutation p", |effect| p_value(effect.permutation_p, effect.why_no_test())),
         ("less by", |effect| {
             let found = effect.reduction;
             with_interval(
                 found.map(|found| found.estimate),
                 found.map(|found| [found.low, found.high]),
                 effect.measure.digits,
+                effect.why_no_test(),
             )
         }),
-        ("Hedges\u{2019} g", |effect| number(effect.hedges_g, 2).render()),
-        ("F (period)", |effect| number(effect.by_period.within.map(|test| test.f), 2).render()),
-        ("p of period", |effect| p_value(effect.by_period.within.map(|test| test.p)).render()),
+        ("Hedges\u{2019} g", |effect| number(effect.hedges_g, 2, effect.why_no_test())),
+        ("F (period)", |effect| number(effect.by_period.within.map(|test| test.f), 2, effect.why_no_test())),
+        ("p of period", |effect| p_value(effect.by_period.within.map(|test| test.p), effect.why_no_test())),
     ];
     let caption = "Tests of what assistance takes away. Participants: assisted in the second trial + in the first. Less by: the \
                    Hodges-Lehmann estimate with its interval (at least 95 %). Period: the second trial against the first, whatever \
@@ -178,12 +192,13 @@ fn left_out(what: &str, left_out: &[LeftOutParticipant]) -> Markup {
 
 fn anova(captions: &mut Captions, effect: &AssistanceEffect) -> Markup {
     let row = |what: &dyn Render, test: Option<FTest>| {
+        let why = effect.why_no_test();
         cells([
             what,
-            &number(test.map(|test| test.f), 3),
-            &test.map_or(UNKNOWN.to_string(), |test| format!("{:.0}, {:.0}", test.df[0], test.df[1])),
-            &p_value(test.map(|test| test.p)),
-            &number(test.map(|test| test.partial_eta_sq), 3),
+            &number(test.map(|test| test.f), 3, why),
+            &known(test, why, |test| format!("{:.0}, {:.0}", test.df[0], test.df[1])),
+            &p_value(test.map(|test| test.p), why),
+            &number(test.map(|test| test.partial_eta_sq), 3, why),
         ])
     };
     let (period, condition) = (&effect.by_period, &effect.by_condition);
@@ -239,7 +254,7 @@ fn comparison(captions: &mut Captions, found: &StudyArmComparison) -> Markup {
             "Compared: " (outcome) " per press of the human, in " (found.trials) " trials of " (found.participants)
             " participants. Linear mixed model of log((count\u{a0}+\u{a0}0.5)\u{a0}/\u{a0}presses): participant random, condition and trial \
             number fixed; REML, Satterthwaite\u{2019}s degrees of freedom. Standard deviations of the logarithms: "
-            (number(Some(between), 2)) " between participants, " (number(Some(within), 2)) " within."
+            (fixed(between, 2)) " between participants, " (fixed(within, 2)) " within."
         }
         "\n"
         @if !found.groups.is_empty() {
@@ -261,63 +276,67 @@ fn comparison(captions: &mut Captions, found: &StudyArmComparison) -> Markup {
 /// A contrast of study arms in the primary model, with the same contrast in the two other models.
 struct ContrastRow<'a> {
     own: &'a StudyArmContrast,
+    doubt: Option<String>,
     carried: Option<&'a StudyArmContrast>,
-    of_counts: Option<(f64, f64)>,
+    of_counts: Option<&'a NegativeBinomialContrast>,
 }
 
 fn contrasts(captions: &mut Captions, found: &StudyArmComparison) -> Markup {
-    let counts = || found.negative_binomial.iter().flat_map(|model| &model.contrasts);
     let rows: Vec<ContrastRow> = found
         .contrasts
         .iter()
         .map(|own| ContrastRow {
             own,
+            doubt: not_reliable(found, own),
             carried: found.with_carry_over.iter().find(|other| (other.arm, other.against) == (own.arm, own.against)),
-            of_counts: counts()
-                .find(|other| (other.arm, other.against) == (own.arm, own.against))
-                .map(|other| (other.ratio, other.p_holm)),
+            of_counts: found.negative_binomial.as_ref().and_then(|model| model.of(own)),
         })
         .collect();
     let columns: [PageColumn<ContrastRow>; 9] = [
         ("condition", |row| row.own.arm.title().render()),
         ("against", |row| row.own.against.title().render()),
-        ("ratio of rates", |row| with_interval(Some(row.own.ratio), Some(row.own.interval), 2)),
+        ("ratio of rates", |row| {
+            html! {
+                (with_interval(Some(row.own.ratio), Some(row.own.interval), 2, ""))
+                @if let Some(why) = &row.doubt { small class="doubt" { (why) } }
+            }
+        }),
         ("level of the interval", |row| level(row.own.level).render()),
         ("t (degrees of freedom)", |row| {
-            format!("{} ({})", number(Some(row.own.contrast.t), 2), number(Some(row.own.contrast.df), 1)).render()
+            format!("{} ({})", fixed(row.own.contrast.t, 2), fixed(row.own.contrast.df, 1)).render()
         }),
-        ("p", |row| p_value(Some(row.own.contrast.p)).render()),
-        ("p, Holm", |row| p_value(Some(row.own.p_holm)).render()),
+        ("p", |row| p_words(row.own.contrast.p).render()),
+        ("p, Holm", |row| p_words(row.own.p_holm).render()),
         ("negative binomial: ratio, p (Holm)", |row| {
-            row.of_counts
-                .map_or_else(
-                    || number(None, 2),
-                    |(ratio, p)| format!("{}, {}", number(Some(ratio), 2), p_value(Some(p))),
-                )
-                .render()
+            known(row.of_counts, why::NO_COUNTS, |one| format!("{}, {}", fixed(one.ratio, 2), p_words(one.p_holm)))
         }),
         ("with carry-over: ratio, p (Holm)", |row| {
-            row.carried
-                .map_or_else(
-                    || number(None, 2),
-                    |one| format!("{}, {}", number(Some(one.ratio), 2), p_value(Some(one.p_holm))),
-                )
-                .render()
+            known(row.carried, NO_CARRY_OVER, |one| format!("{}, {}", fixed(one.ratio, 2), p_words(one.p_holm)))
         }),
     ];
-    let caption = "Contrasts of the primary model, and beside them those of a mixed negative binomial model (log presses as offset) and of \
-                   the primary model with the effect of the condition before. Holm: corrected over all contrasts of a model.";
-    let caption = format!("{caption} {RATES_AND_RATIO}");
-    captions.table_of_columns(caption, &columns, rows.iter())
+    let (columns, carried) = match found.with_carry_over.is_empty() {
+        true => (&columns[..8], ""),
+        false => (&columns[..], " and of the primary model with the effect of the condition before"),
+    };
+    let caption = format!(
+        "Contrasts of the primary model, and beside them those of a mixed negative binomial model (log presses as offset){carried}. Holm: \
+         corrected over all contrasts of a model. {RATES_AND_RATIO}"
+    );
+    html! {
+        (captions.table_of_columns(caption, columns, rows.iter()))
+        @for sentence in doubts(found) { p class="warning" { (sentence) } "\n" }
+    }
 }
+
+const NO_CARRY_OVER: &str = "cannot be estimated from these trials";
 
 fn arms_in_words(one: &NonInferiority, outcome: &str) -> Markup {
     let verdict = if one.holds { "is not worse than" } else { "is not shown to be not worse than" };
     html! {
         p {
-            (one.arm.title()) " " (verdict) " the " (one.against.title()) ": ratio of " (outcome) " " (number(Some(one.ratio), 2))
-            ", upper end of the one-sided interval of 97.5 % " (number(Some(one.upper), 2)) ", margin "
-            (number(Some(one.margin), 2)) " (p\u{a0}=\u{a0}" (p_value(Some(one.p))) ")."
+            (one.arm.title()) " " (verdict) " the " (one.against.title()) ": ratio of " (outcome) " " (fixed(one.ratio, 2))
+            ", upper end of the one-sided interval of 97.5 % " (fixed(one.upper, 2)) ", margin "
+            (fixed(one.margin, 2)) " (" (p_sentence(one.p)) ")."
         }
         "\n"
     }

@@ -2,11 +2,12 @@
 
 use maud::{Markup, Render, html};
 
-use super::elements::{Captions, PageColumn, UNKNOWN, keys, nothing, number, with_interval};
+use super::elements::{Captions, PageColumn, keys, nothing, number, told, with_interval};
 use crate::charts::{self, MOST_SIGNALS};
 use crate::figures::StudySummary;
 use crate::live_arms::SignalSenderResults;
 use crate::roc::{BootstrapInterval, ConceptRocCurve, EQUAL_SIGNALS};
+use crate::why;
 use tomcom_core::base::text::count;
 use tomcom_core::measures::raters::BeliefSource;
 
@@ -15,7 +16,7 @@ pub(super) fn concepts(captions: &mut Captions, figures: &StudySummary) -> Marku
     let pictures = html! {
         (captions.figure(charts::roc(figures), html! {
             "Receiver operating characteristics over unassisted trials" (bands(figures)) ". False beliefs are known by "
-            (figures.roc_beliefs_from.map_or(UNKNOWN, BeliefSource::words)) "." (key)
+            (figures.roc_beliefs_from.map_or("unknown sources", BeliefSource::words)) "." (key)
         }))
         (captions.figure(charts::equal_signals(figures), html! {
             "Errors prevented against number of signals. Each point is one parameter value. A curve may fall, because a value that \
@@ -36,6 +37,8 @@ pub(super) fn concepts(captions: &mut Captions, figures: &StudySummary) -> Marku
     };
     captions.section("Which concept prevents more?", content)
 }
+
+const REFERENCE: &str = "the others are compared with this";
 
 fn bands(figures: &StudySummary) -> String {
     let drawn = figures.roc.iter().filter(|roc| !roc.points.is_empty());
@@ -64,17 +67,20 @@ fn live(captions: &mut Captions, figures: &StudySummary) -> Markup {
             let parameter = one.arm.parameter.map_or(String::new(), |parameter| format!(" {parameter}"));
             format!("{}{parameter}", one.arm.concept).render()
         }),
-        ("belief related errors per 100 presses", |one| number(one.belief_related_per_100, 2).render()),
-        ("sequences per 100 presses", |one| number(one.sequences_per_100, 2).render()),
-        ("errors per sequence", |one| number(one.mean_sequence_length, 2).render()),
+        ("belief related errors per 100 presses", |one| number(one.belief_related_per_100, 2, why::NO_PRESS)),
+        ("sequences per 100 presses", |one| number(one.sequences_per_100, 2, why::NO_PRESS)),
+        ("errors per sequence", |one| number(one.mean_sequence_length, 2, why::NO_SEQUENCE)),
         ("orders", |one| one.orders.render()),
-        ("orders per minute", |one| number(one.orders_per_minute, 2).render()),
-        ("signals per 100 presses", |one| number(one.interruptions_per_100, 2).render()),
-        ("their contents", |one| number(one.contents_per_100, 2).render()),
-        ("useless", |one| number(one.useless_per_100, 2).render()),
-        ("fewer belief related errors", |one| number(one.prevented, 2).render()),
-        ("prevented, offline", |one| number(one.prevented_offline, 2).render()),
-        ("signals per 100, offline", |one| number(one.interruptions_per_100_offline, 2).render()),
+        ("orders per minute", |one| number(one.orders_per_minute, 2, why::NO_PRESS)),
+        ("signals per 100 presses", |one| number(one.interruptions_per_100, 2, why::NO_PRESS)),
+        ("their contents", |one| number(one.contents_per_100, 2, why::NO_PRESS)),
+        ("useless", |one| number(one.useless_per_100, 2, why::NOT_TWINNED)),
+        ("fewer belief related errors", |one| {
+            let why = if one.arm.concept == "none" { REFERENCE } else { why::NO_REFERENCE };
+            number(one.prevented, 2, why)
+        }),
+        ("prevented, offline", |one| number(one.prevented_offline, 2, why::NOT_OFFLINE)),
+        ("signals per 100, offline", |one| number(one.interruptions_per_100_offline, 2, why::NOT_OFFLINE)),
     ];
     let trials = figures.live.first().map_or(0, |arm| arm.trials);
     let caption = format!(
@@ -89,15 +95,15 @@ fn live(captions: &mut Captions, figures: &StudySummary) -> Markup {
 }
 
 fn at_equal_signals(captions: &mut Captions, figures: &StudySummary) -> Markup {
-    let banded = |value: Option<f64>, low: Option<f64>, high: Option<f64>| {
-        with_interval(value, low.zip(high).map(|(low, high)| [low, high]), 2)
+    let banded = |value: Option<f64>, low: Option<f64>, high: Option<f64>, why: &str| {
+        with_interval(value, low.zip(high).map(|(low, high)| [low, high]), 2, why)
     };
     let row = |head: String, values: &[BootstrapInterval], area: Markup| -> Vec<Markup> {
-        let values = values.iter().map(|one| banded(one.value, one.low, one.high));
+        let values = values.iter().map(|one| banded(one.value, one.low, one.high, why::NO_CURVE));
         std::iter::once(head.render()).chain(values).chain([area]).collect()
     };
     let title = |roc: &ConceptRocCurve| roc.concept.title().to_string();
-    let area = |roc: &ConceptRocCurve| banded(roc.auc, roc.auc_low, roc.auc_high);
+    let area = |roc: &ConceptRocCurve| banded(roc.auc, roc.auc_low, roc.auc_high, why::NO_AREA);
     let concepts = figures.roc.iter().map(|roc| row(title(roc), &roc.at_equal_signals, area(roc)));
     let behind = figures.roc.iter().skip(1);
     let behind = behind.map(|roc| row(format!("ToM-Com is ahead of {} by", title(roc)), &roc.behind_first, nothing()));
@@ -110,12 +116,12 @@ fn at_equal_signals(captions: &mut Captions, figures: &StudySummary) -> Markup {
         std::iter::once("prevented".to_string()).chain(signals).chain(["partial area".to_string()]).collect();
     let caption = format!(
         "Shares of the belief related errors prevented at equal interruptions per 100 presses of the human, and shares of useless \
-         ones among the signals, with intervals of 95 % by bootstrap over participants ({} in {} unassisted trials). The partial area is over false positive rates from 0 to {}, which \
+         ones among the signals, with intervals of 95 % by bootstrap over participants ({} in {} unassisted trials). The partial area is over false positive rates from 0 to {}, the largest that \
          all concepts reach, divided by that range; its interval has the range of those who are drawn. The paper prints no figures \
          here; its ToM-Com lies clearly above ToM and DEV.",
         figures.roc_participants,
         figures.roc_trials,
-        number(figures.roc_common_fpr, 3),
+        told(figures.roc_common_fpr, 3, why::NO_AREA),
     );
     captions.table(caption, &heads, &concepts.chain(behind).chain(useless).collect::<Vec<_>>())
 }

@@ -5,7 +5,9 @@ use maud::{Markup, PreEscaped, Render, html};
 use crate::charts::minus;
 use tomcom_session::settings::ArmKind;
 
-pub(super) const UNKNOWN: &str = "\u{2013}";
+pub(super) const DASH: &str = "\u{2013}";
+/// What stands around the reason in a value that is not known.
+const UNKNOWN: [&str; 2] = ["<span class=\"unknown\" title=\"", "\">\u{2013}"];
 
 #[derive(Debug, Default)]
 pub(super) struct Captions {
@@ -26,7 +28,7 @@ impl Captions {
         }
     }
 
-    /// First column text, all others numbers. Notes belong in the caption: page breaks never separate the two.
+    /// First column text, all others numbers. The caption ends with the reasons of what is not known. Notes belong in the caption: page breaks never separate the two.
     pub(super) fn table(&mut self, caption: impl Render, heads: &[impl Render], rows: &[Vec<Markup>]) -> Markup {
         self.table_of_class(None, caption, heads, rows)
     }
@@ -60,11 +62,14 @@ impl Captions {
         rows: &[Vec<Markup>],
     ) -> Markup {
         self.tables += 1;
+        let reasons = reasons(rows);
+        let rows =
+            &rows.iter().map(|row| row.iter().map(|cell| lettered(cell, &reasons)).collect()).collect::<Vec<_>>();
         let words: Vec<Option<&str>> =
             (0..heads.len()).map(|column| (column > 0 && are_words(rows, column)).then_some("word")).collect();
         html! {
             figure class="table" {
-                figcaption { b { "Table\u{a0}" (self.tables) "." } " " (caption) } "\n"
+                figcaption { b { "Table\u{a0}" (self.tables) "." } " " (caption) (reasons_in_words(&reasons)) } "\n"
                 div class="scroll" {
                     table class=[class] {
                         thead { tr { @for (head, class) in heads.iter().zip(&words) { th class=[class] { (head) } } } }
@@ -131,34 +136,89 @@ pub(super) fn keys(keys: &[(&str, &str)]) -> Markup {
     }
 }
 
-/// A number with this many decimals as text; a dash for `None`.
-pub(super) fn number(value: Option<f64>, digits: usize) -> String {
-    value.filter(|value| value.is_finite()).map_or(UNKNOWN.to_string(), |value| minus(&format!("{value:.digits$}")))
+/// What is not known in a table: a dash, whose reason the caption gives.
+pub(super) fn unknown(why: &str) -> Markup {
+    html! { span class="unknown" title=(why) { (DASH) } }
 }
 
-pub(super) fn with_interval(value: Option<f64>, interval: Option<[f64; 2]>, digits: usize) -> Markup {
-    html! { (number(value, digits)) @if let Some(ends) = interval { small { (range(ends, digits)) } } }
-}
-
-pub(super) fn percent(value: Option<f64>) -> String {
-    value.map_or(UNKNOWN.to_string(), |value| format!("{:.1} %", 100.0 * value))
-}
-
-pub(super) fn p_value(p: Option<f64>) -> String {
-    match p {
-        None => UNKNOWN.to_string(),
-        // Without the no-break space, a line could break between sign and number.
-        Some(p) if p < 0.001 => "<\u{a0}0.001".to_string(),
-        Some(p) => format!("{p:.3}"),
+/// The reasons of what is not known in these rows, each once.
+fn reasons(rows: &[Vec<Markup>]) -> Vec<String> {
+    let mut found: Vec<String> = Vec::new();
+    for cell in rows.iter().flatten() {
+        for (why, _) in cell.0.split(UNKNOWN[0]).skip(1).filter_map(|rest| rest.split_once(UNKNOWN[1])) {
+            if !found.iter().any(|known| known == why) {
+                found.push(why.to_string());
+            }
+        }
     }
+    found
+}
+
+fn letter(index: usize) -> char {
+    char::from(b'a' + index.min(25) as u8)
+}
+
+/// A cell with the letter of its reason, if there are several reasons.
+fn lettered(cell: &Markup, reasons: &[String]) -> Markup {
+    let mut text = cell.0.clone();
+    for (index, why) in reasons.iter().enumerate().filter(|_| reasons.len() > 1) {
+        let dash = UNKNOWN.join(why.as_str());
+        text = text.replace(&dash, &format!("{dash}<sup>{}</sup>", letter(index)));
+    }
+    PreEscaped(text)
+}
+
+fn reasons_in_words(reasons: &[String]) -> Markup {
+    html! {
+        @for (index, why) in reasons.iter().enumerate() {
+            " " (DASH) @if reasons.len() > 1 { sup { (letter(index)) } } ":\u{a0}" (PreEscaped(why)) "."
+        }
+    }
+}
+
+/// A number with this many decimals as text.
+pub(super) fn fixed(value: f64, digits: usize) -> String {
+    minus(&format!("{value:.digits$}"))
+}
+
+/// A number in a sentence, or that it is not known, and why.
+pub(super) fn told(value: Option<f64>, digits: usize, why: &str) -> String {
+    value.filter(|value| value.is_finite()).map_or(format!("not known ({why})"), |value| fixed(value, digits))
+}
+
+/// A value of a table, or why it is not known.
+pub(super) fn known<T>(value: Option<T>, why: &str, text: impl FnOnce(T) -> String) -> Markup {
+    value.map_or_else(|| unknown(why), |value| text(value).render())
+}
+
+pub(super) fn number(value: Option<f64>, digits: usize, why: &str) -> Markup {
+    known(value.filter(|value| value.is_finite()), why, |value| fixed(value, digits))
+}
+
+pub(super) fn with_interval(value: Option<f64>, interval: Option<[f64; 2]>, digits: usize, why: &str) -> Markup {
+    html! { (number(value, digits, why)) @if let Some(ends) = interval { small { (range(ends, digits)) } } }
+}
+
+pub(super) fn percent(value: Option<f64>, why: &str) -> Markup {
+    known(value, why, in_percent)
+}
+
+pub(super) fn in_percent(value: f64) -> String {
+    format!("{:.1} %", 100.0 * value)
+}
+
+pub(super) fn p_value(p: Option<f64>, why: &str) -> Markup {
+    known(p, why, p_words)
+}
+
+pub(super) fn p_words(p: f64) -> String {
+    // Without the no-break space, a line could break between sign and number.
+    if p < 0.001 { "<\u{a0}0.001".to_string() } else { format!("{p:.3}") }
 }
 
 /// The p value of a test with its relational sign, for sentences; without line breaks.
-pub(super) fn p_sentence(p: Option<f64>) -> String {
-    match p {
-        Some(p) if p < 0.001 => "p\u{a0}<\u{a0}0.001".to_string(),
-        p => format!("p\u{a0}=\u{a0}{}", p_value(p)),
-    }
+pub(super) fn p_sentence(p: f64) -> String {
+    if p < 0.001 { format!("p\u{a0}{}", p_words(p)) } else { format!("p\u{a0}=\u{a0}{}", p_words(p)) }
 }
 
 /// A range of numbers as "low to high"; another text if a bound is infinite.
@@ -174,8 +234,8 @@ pub(super) fn range([low, high]: [f64; 2], digits: usize) -> String {
     format!("{} to {}", end(low), end(high))
 }
 
-pub(super) fn count(value: Option<u64>) -> String {
-    value.map_or(UNKNOWN.to_string(), |value| value.to_string())
+pub(super) fn count(value: Option<u64>, why: &str) -> Markup {
+    known(value, why, |value| value.to_string())
 }
 
 pub(super) fn arm(kind: ArmKind) -> &'static str {

@@ -14,7 +14,11 @@ use tomcom_session::event::TrialEndReason;
 pub(super) fn methods(captions: &mut Captions, figures: &StudySummary, facts: &RecordingFacts) -> Markup {
     let content = html! {
         p { (conduct(figures, facts)) (wizard(facts)) (versions(figures, facts)) } "\n"
-        p { (analysis(figures)) } "\n"
+        p {
+            (analysis(figures))
+            @if let Some(found) = &figures.preregistration { " SHA-256 of the frozen plan: " code { (found.digest) } "." }
+        }
+        "\n"
         @if let Some(traits) = facts.all("traits") {
             details class="note" {
                 summary { "Traits of simulated participants" }

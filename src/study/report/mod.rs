@@ -15,16 +15,16 @@ use crate::column::CsvTable;
 use crate::definitions::DEFINITIONS;
 use crate::facts::RecordingFacts;
 use crate::figures::{StudySummary, pairs_in_words};
-use crate::headline::{mixed_sources, per_100, primary_outcome};
+use crate::headline::{level, mixed_sources, not_reliable, per_100, primary_outcome};
 use crate::pass::reading::WaivedPractice;
 use crate::planned_trial::{copies_in_words, foreign_in_words, in_words};
 use crate::report::elements::{
-    Captions, PageColumn, UNKNOWN, cells, count, keys, nothing, number, p_sentence, percent,
+    Captions, DASH, PageColumn, cells, count, fixed, keys, known, nothing, number, p_sentence, percent, range, told,
 };
 use crate::trial_statistics::{DisplayLosses, TrialStatistics};
+use crate::why;
 use tomcom_core::base::text;
 use tomcom_core::measures::raters::{BeliefSource, RaterAgreement};
-use tomcom_session::event::TrialEndReason;
 
 pub const STYLE: &str = include_str!("style.css");
 
@@ -112,21 +112,35 @@ fn summary(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStati
     let pairs: usize = figures.effects.first().map_or(0, |effect| effect.groups.iter().sum());
     let effect = match figures.pearson {
         Some(_) if pairs < FEWEST_PARTICIPANTS => card(
-            UNKNOWN,
+            DASH,
             &format!(
                 "no r and no p here: {pairs} participants with both trials are fewer than {FEWEST_PARTICIPANTS}, and r would be chance"
             ),
         ),
         Some(pearson) => card(
-            &format!("r\u{a0}=\u{a0}{}", number(Some(pearson.r), 2)),
-            &format!("of assistance and fewer errors ({})", p_sentence(Some(pearson.p))),
+            &format!("r\u{a0}=\u{a0}{}", fixed(pearson.r, 2)),
+            &format!("of assistance and fewer errors ({})", p_sentence(pearson.p)),
         ),
         None => nothing(),
     };
     let rates = figures.conditions.iter().map(|one| {
         let trials = text::count(one.trials, "trial", "trials");
         let what = format!("{} per 100 presses of the human in {trials}: {}", outcome.title(), one.condition.title());
-        card(&number(per_100(one, outcome), 1), &what)
+        match per_100(one, outcome) {
+            Some(rate) => card(&fixed(rate, 1), &what),
+            None => card(DASH, &format!("{what}; {}", one.totals.why_no_rate())),
+        }
+    });
+    // With two conditions; a chart and a table show more contrasts.
+    let ratio = figures.arms.as_ref().filter(|found| found.contrasts.len() == 1).map(|found| {
+        let one = &found.contrasts[0];
+        let doubt = not_reliable(found, one).map_or(String::new(), |why| format!("; {why}"));
+        let interval = match one.interval.iter().all(|end| end.is_finite()) {
+            true => format!("{} interval {}", level(one.level), range(one.interval, 2)),
+            false => "too few trials for an interval".to_string(),
+        };
+        let (arm, against) = (one.arm.title(), one.against.title());
+        card(&fixed(one.ratio, 2), &format!("ratio of the rates, {arm} to {against}: {interval}{doubt}"))
     });
     html! {
         // Of several sentences the first says what the others show together; their figures stand in a table.
@@ -134,6 +148,13 @@ fn summary(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStati
         p class="lead" {
             (text::count(figures.trials, "trial", "trials")) " of "
             (text::count(figures.participants, "participant", "participants")) ", " (totals.actions) " recorded presses."
+        }
+        "\n"
+        div class="cards" {
+            "\n"
+            @if let Some(ratio) = ratio { (ratio) }
+            @for rate in rates { (rate) }
+            (effect)
         }
         "\n"
         @if figures.simulated_participants {
@@ -156,7 +177,7 @@ fn summary(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStati
         @if let Some(found) = &figures.preregistration {
             p class=(if found.differences.is_empty() { "note" } else { "warning" }) { (found.words()) } "\n"
         }
-        @if let Some(missing) = in_words(&figures.missing_trials) { p class="note" { (missing) } "\n" }
+        @if let Some(missing) = in_words(&figures.missing_trials, &figures.corrections) { p class="note" { (missing) } "\n" }
         @for one in &figures.corrections { p class="note" { (one.in_words()) "." } "\n" }
         @if let Some(foreign) = foreign_in_words(&figures.foreign) { p class="warning" { (foreign) "." } "\n" }
         @if let Some(copies) = copies_in_words(&figures.copies) { p class="note" { (copies) } "\n" }
@@ -165,12 +186,6 @@ fn summary(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStati
         @for one in &figures.stale_consensus {
             p class="warning" { "Stale consensus, not used: " (one.recording) ": " (one.reason) "." } "\n"
         }
-        div class="cards" {
-            "\n"
-            @for rate in rates { (rate) }
-            (effect)
-        }
-        "\n"
         div class="figures" {
             (captions.figure(charts::rates_by_condition(trials, outcome), html! {
                 "A line joins the trials of a participant; black is the mean of the participants\u{2019} rates. The figures above and the \
@@ -178,8 +193,13 @@ fn summary(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStati
                 @if figures.conditions.len() == 2 { (keys(&[("first", "assisted first"), ("second", "unassisted first")])) }
             }))
             @if let Some(found) = &figures.arms {
-                (captions.figure(charts::ratios(&found.contrasts), "Ratio of the rates of two conditions, with its interval. Below 1 the \
-                    first one has fewer; an interval across the line at 1 shows no difference."))
+                (captions.figure(charts::ratios(&found.contrasts), html! {
+                    "Ratio of the rates of two conditions, with its interval. Below 1 the first one has fewer; an interval across the line \
+                     at 1 shows no difference."
+                    @for (one, why) in found.contrasts.iter().filter_map(|one| Some((one, not_reliable(found, one)?))) {
+                        " " (one.arm.title()) " to " (one.against.title()) ": " (why) "."
+                    }
+                }))
             }
         }
         "\n"
@@ -190,9 +210,9 @@ fn raters(found: &RaterAgreement, figures: &StudySummary) -> Markup {
     html! {
         p {
             "Two raters (" (pairs_in_words(&figures.rater_pairs)) ") coded the causes of errors. They agree on the cause of " (found.same_cause) " of " (found.errors)
-            " errors (Cohen\u{2019}s kappa " (number(found.kappa_cause, 2)) "). Of " (found.beliefs) " errors that both \
+            " errors (Cohen\u{2019}s kappa " (told(found.kappa_cause, 2, why::NO_KAPPA)) "). Of " (found.beliefs) " errors that both \
             attribute to a false belief, they agree on its location for " (found.same_aspect) " (kappa "
-            (number(found.kappa_aspect, 2)) "). Without a consensus an error counts as belief related if both coded a false belief."
+            (told(found.kappa_aspect, 2, why::NO_KAPPA)) "). Without a consensus an error counts as belief related if both coded a false belief."
             @if let Some(shared) = &figures.shared_beliefs {
                 " False belief episodes, and with them errors prevented, hits and omissions, follow from the errors for which both name \
                  the same false belief (" (shared.same) "), or from the consensus; for " (shared.differing) " errors they name different \
@@ -239,7 +259,7 @@ fn without_display(trials: &[TrialStatistics]) -> Markup {
         @if times > 0 {
             p class="note" {
                 "The participant's display was lost " (text::count(times, "time", "times")) " while a trial ran, for "
-                (number(Some(seconds), 1)) " s, in " (text::count(lost.len() as u64, "trial", "trials")) " (" code { "display_lost" } ")."
+                (fixed(seconds, 1)) " s, in " (text::count(lost.len() as u64, "trial", "trials")) " (" code { "display_lost" } ")."
             }
             "\n"
         }
@@ -249,19 +269,19 @@ fn without_display(trials: &[TrialStatistics]) -> Markup {
 fn counting(captions: &mut Captions, trials: &[TrialStatistics]) -> Markup {
     let columns: [PageColumn<TrialStatistics>; 14] = [
         ("participant", |trial| trial.participant.render()),
-        ("group", |trial| trial.group.as_deref().unwrap_or(UNKNOWN).render()),
-        ("trial", |trial| count(trial.period.map(u64::from)).render()),
+        ("group", |trial| known(trial.group.as_ref(), why::NO_PLAN, String::clone)),
+        ("trial", |trial| count(trial.period.map(u64::from), why::NO_PLAN)),
         ("condition", |trial| trial.planned_arm.title().render()),
-        ("ended by", |trial| trial.ended.map_or(UNKNOWN, TrialEndReason::name).render()),
+        ("ended by", |trial| known(trial.ended, why::CUT, |reason| reason.name().to_string())),
         ("presses, human", |trial| trial.human_presses.render()),
         ("robot", |trial| trial.robot_presses.render()),
         ("errors", |trial| trial.errors.render()),
-        ("per press of the human", |trial| percent(trial.error_rate_human()).render()),
-        ("belief related", |trial| count(trial.beliefs.as_ref().map(|beliefs| beliefs.errors)).render()),
-        ("per sequence", |trial| number(trial.sequence_length(), 1).render()),
+        ("per press of the human", |trial| percent(trial.error_rate_human(), why::NO_PRESS)),
+        ("belief related", |trial| count(trial.beliefs.as_ref().map(|beliefs| beliefs.errors), trial.why_no_length())),
+        ("per sequence", |trial| number(trial.sequence_length(), 1, trial.why_no_length())),
         ("signals", |trial| trial.signals.render()),
         ("orders", |trial| trial.orders.render()),
-        ("s per press", |trial| number(trial.press_s, 2).render()),
+        ("s per press", |trial| number(trial.press_s, 2, why::ONE_PRESS)),
     ];
     let number = trials.iter().filter(|trial| trial.counts()).count();
     let caption = html! {

@@ -5,13 +5,18 @@ use maud::{Markup, Render, html};
 use crate::analysis::offer_summary::{OfferDurations, OfferSummary};
 use crate::analysis::probe_figures::{
     ProbeAccuracyGrouping, ProbeAnswerAccuracy, ProbeCounts, ProbeSummary, RecordedBeliefComparison,
+    SituationAwarenessEffect,
 };
 use crate::charts;
+use crate::effect::AssistanceEffect;
 use crate::figures::StudySummary;
+use crate::headline::directed;
 use crate::report::elements::{
-    Captions, PageColumn, UNKNOWN, arm, cells, count, keys, nothing, number, p_value, percent, range, with_interval,
+    Captions, PageColumn, arm, cells, count, fixed, in_percent, keys, known, nothing, number, p_value, percent, range,
+    told, unknown, with_interval,
 };
 use crate::robot_tally::{ArmSafetySummary, RobotArmTotals};
+use crate::why;
 use tomcom_core::base::text;
 use tomcom_core::communication::offer::OfferCloseReason;
 use tomcom_core::measures::detection::CALIBRATED;
@@ -24,42 +29,48 @@ use tomcom_session::study_arm::StudyArm;
 
 pub(super) fn beside_the_paper(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let totals = &figures.totals;
-    let row = |what: &str, here: String, paper: &str| cells([&what, &here, &paper]);
+    let row = |what: &str, here: Markup, paper: &str| cells([&what, &here, &paper]);
+    let own_row = |what: &str, here: Markup| cells([&what, &here, &unknown("the paper does not say")]);
+    let (no_rate, no_length) = (totals.why_no_rate(), totals.why_no_length());
     let per_trial = (figures.trials > 0).then(|| totals.actions as f64 / figures.trials as f64);
     let matched = figures.similarity.as_ref().and_then(|found| found.signal.recall);
     let mut rows = vec![
-        row("participants", figures.participants.to_string(), "14"),
-        row("trials", figures.trials.to_string(), "28"),
-        row("presses of both agents", totals.actions.to_string(), "8515"),
-        row("presses per trial", number(per_trial, 0), "304"),
-        row("errors of the human", totals.errors.to_string(), "587"),
-        row("presses of the human judged by unproven costs to go", totals.unproven.to_string(), UNKNOWN),
-        row("errors per press of both", percent(totals.error_rate), "6.9 %"),
-        row("errors per press of the human", percent(totals.error_rate_human), "about 11 to 13 %"),
-        row("belief related errors", count(totals.belief_related_errors), "481"),
-        row("of these about orders, recipes, either, places", kinds(figures), UNKNOWN),
-        row("share of the errors that are belief related", percent(totals.belief_related_share), "82 %"),
-        row("sequences of related errors", count(totals.sequences), "153"),
-        row("mean errors per sequence", number(totals.mean_sequence_length, 2), "3.1"),
-        row("error sequences, whatever the aspect", count(totals.sequences_any_aspect), UNKNOWN),
+        row("participants", figures.participants.render(), "14"),
+        row("trials", figures.trials.render(), "28"),
+        row("presses of both agents", totals.actions.render(), "8515"),
+        row("presses per trial", number(per_trial, 0, "no trial"), "304"),
+        row("errors of the human", totals.errors.render(), "587"),
+        own_row("presses of the human judged by unproven costs to go", totals.unproven.render()),
+        row("errors per press of both", percent(totals.error_rate, why::NO_PRESS), "6.9 %"),
+        row("errors per press of the human", percent(totals.error_rate_human, why::NO_PRESS), "about 11 to 13 %"),
+        row("belief related errors", count(totals.belief_related_errors, no_rate), "481"),
+        own_row("of these about orders, recipes, either, places", kinds(figures)),
         row(
-            "mean errors per sequence, whatever the aspect",
-            number(totals.mean_sequence_length_any_aspect, 2),
-            UNKNOWN,
+            "share of the errors that are belief related",
+            percent(totals.belief_related_share, totals.why_no_share()),
+            "82 %",
         ),
-        row("mean seconds to recover from a sequence", number(totals.mean_recovery_s, 1), UNKNOWN),
+        row("sequences of related errors", count(totals.sequences, no_rate), "153"),
+        row("mean errors per sequence", number(totals.mean_sequence_length, 2, no_length), "3.1"),
+        own_row("error sequences, whatever the aspect", count(totals.sequences_any_aspect, no_rate)),
+        own_row(
+            "mean errors per sequence, whatever the aspect",
+            number(totals.mean_sequence_length_any_aspect, 2, no_length),
+        ),
+        own_row("mean seconds to recover from a sequence", number(totals.mean_recovery_s, 1, totals.why_no_recovery())),
     ];
     // A study without the test, such as one with more than two conditions, has no result to compare with the paper's.
     if let Some(test) = figures.anova {
+        let no_test = figures.effects.first().map_or("", AssistanceEffect::why_no_test);
         rows.extend([
-            row("assistance: participants with both trials", test.n.to_string(), "14"),
-            row("assistance: p of the mixed ANOVA", p_value(Some(test.p)), "0.014"),
-            row("assistance: Pearson r", number(figures.pearson.map(|found| found.r), 2), "0.64"),
-            row("assistance: p of r", p_value(figures.pearson.map(|found| found.p)), "0.014"),
+            row("assistance: participants with both trials", test.n.render(), "14"),
+            row("assistance: p of the mixed ANOVA", p_value(Some(test.p), no_test), "0.014"),
+            row("assistance: Pearson r", number(figures.pearson.map(|found| found.r), 2, no_test), "0.64"),
+            row("assistance: p of r", p_value(figures.pearson.map(|found| found.p), no_test), "0.014"),
         ]);
     }
     if matched.is_some() {
-        rows.push(row("wizard signals matched by ToM-Com", percent(matched), "74 %"));
+        rows.push(row("wizard signals matched by ToM-Com", percent(matched, why::NO_SIGNAL), "74 %"));
     }
     let caption =
         "All trials together. Paper: Buehler, Adamy and Weisswange (2021); its 6.9 % is per press of both agents.";
@@ -67,9 +78,8 @@ pub(super) fn beside_the_paper(captions: &mut Captions, figures: &StudySummary) 
     captions.section("Comparison with the paper", table)
 }
 
-fn kinds(figures: &StudySummary) -> String {
-    let found = figures.totals.belief_related_by_kind;
-    found.map_or(UNKNOWN.to_string(), |kinds| {
+fn kinds(figures: &StudySummary) -> Markup {
+    known(figures.totals.belief_related_by_kind, figures.totals.why_no_rate(), |kinds| {
         format!("{}, {}, {}, {}", kinds.orders, kinds.recipes, kinds.order_or_recipe, kinds.places)
     })
 }
@@ -98,7 +108,7 @@ fn performance(figures: &StudySummary) -> String {
 fn offers(found: &OfferSummary) -> Markup {
     let times = |one: &OfferDurations| match (one.median_s, one.shortest_s) {
         (Some(median_s), Some(shortest_s)) => format!("{median_s:.1} s in the median, {shortest_s:.1} s at least"),
-        _ => UNKNOWN.to_string(),
+        _ => "for a time that is not known, since all were cut".to_string(),
     };
     let by_reason = |(reason, one): (&OfferCloseReason, &OfferDurations)| format!("{} {}", one.n, reason.words());
     let reasons: Vec<String> = found.by_reason.iter().map(by_reason).collect();
@@ -118,9 +128,9 @@ fn offers(found: &OfferSummary) -> Markup {
 fn matches(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let Some(found) = &figures.similarity else { return nothing() };
     let share = |what: &str, level: &MatchShares| {
-        let shares = [level.recall, level.chance_recall, level.precision, level.f1].map(|value| number(value, 2));
-        let [recall, chance, precision, f1] = &shares;
-        cells([&what, recall, chance, precision, f1])
+        let (recall, precision) = (number(level.recall, 2, why::NO_SIGNAL), number(level.precision, 2, why::NO_SIGNAL));
+        let (chance, f1) = (number(level.chance_recall, 2, why::NO_SHIFT), number(level.f1, 2, why::NO_MATCH));
+        cells([&what, &recall, &chance, &precision, &f1])
     };
     let rows = [
         share("same signal and target", &found.signal),
@@ -134,18 +144,21 @@ fn matches(captions: &mut Captions, figures: &StudySummary) -> Markup {
     html! {
         (captions.table(caption, &heads, &rows))
         p {
-            "The wizard sent " (found.of_n) " signals, ToM-Com would have sent " (found.with_n) "; " (found.matched) " match. Kappa "
-            (number(found.kappa, 2)) " per press; ToM-Com is earlier by " (number(found.median_lead_s, 1)) " s in the median \
-            (negative: later). "
+            "The wizard sent " (found.of_n) " signals, ToM-Com would have sent " (found.with_n) "; " (found.matched) " match. Kappa per press: "
+            (told(found.kappa, 2, why::NO_KAPPA)) "."
+            @if let Some((lead_s, _, earlier)) = found.median_lead_s.map(|lead_s| directed(lead_s, [0.0; 2], ["earlier", "later"])) {
+                " ToM-Com is " (fixed(lead_s, 1)) " s " (earlier) " in the median."
+            }
+            " "
             span class="note" { "Paper: 74 % of the wizard\u{2019}s communications matched." }
         }
         "\n"
         @if let Some(seen) = &figures.similarity_with_advice {
             p {
                 "Not part of this table: trials in which the wizard saw the assistant\u{2019}s recommendations. There "
-                (seen.matched) " of " (seen.of_n) " signals match (recall " (number(seen.signal.recall, 2)) ", by chance "
-                (number(seen.signal.chance_recall, 2)) "; same kind " (number(seen.kind.recall, 2)) ", any signal "
-                (number(seen.any.recall, 2)) ")."
+                (seen.matched) " of " (seen.of_n) " signals match (recall " (told(seen.signal.recall, 2, why::NO_SIGNAL)) ", by chance "
+                (told(seen.signal.chance_recall, 2, why::NO_SHIFT)) "; same kind " (told(seen.kind.recall, 2, why::NO_SIGNAL))
+                ", any signal " (told(seen.any.recall, 2, why::NO_SIGNAL)) ")."
             }
             "\n"
         }
@@ -185,7 +198,7 @@ fn wizard_rows(wizard: &WizardMeasures) -> Vec<Vec<Markup>> {
     ];
     let known = counts.into_iter().filter_map(|(what, value)| Some(cells([&what, &value?])));
     let latency = wizard.latency_s.map(|times| {
-        cells([&"median seconds from the start of a false belief to its signal", &number(Some(times.median), 1)])
+        cells([&"median seconds from the start of a false belief to its signal", &fixed(times.median, 1)])
     });
     known.chain(latency).collect()
 }
@@ -195,7 +208,7 @@ pub(super) fn people(captions: &mut Captions, figures: &StudySummary) -> Markup 
         @if let Some(found) = &figures.acceptance {
             p {
                 "Acceptance of the signals: " (found.high) " high, " (found.medium) " medium, " (found.undecided) " undecided, "
-                (found.low) " low, " (found.not_reported) " not reported; mean " (number(found.mean, 2)) " (0: none, 1: full). "
+                (found.low) " low, " (found.not_reported) " not reported; mean " (told(found.mean, 2, why::NO_ANSWER)) " (0: none, 1: full). "
                 span class="note" { "Paper: 7 high, 3 medium, 3 undecided, 1 not reported." }
             }
             "\n"
@@ -221,9 +234,9 @@ fn asked_after(after: Option<StudyArm>) -> String {
 fn items(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let rows = figures.questionnaires.iter().map(|item| {
         let mean = match (item.points, item.asked.kind) {
-            (Some(points), _) => format!("{} of {points}", number(item.mean, 1)),
-            (None, QuestionnaireItemKind::Choice | QuestionnaireItemKind::Text) => String::new(),
-            (None, _) => number(item.mean, 1).to_string(),
+            (Some(points), _) => known(item.mean, why::NO_ANSWER, |mean| format!("{} of {points}", fixed(mean, 1))),
+            (None, QuestionnaireItemKind::Choice | QuestionnaireItemKind::Text) => nothing(),
+            (None, _) => number(item.mean, 1, why::NO_ANSWER),
         };
         let counts = item.counts.iter().map(u64::to_string);
         let counts: Vec<String> = match item.asked.kind {
@@ -247,7 +260,13 @@ fn items(captions: &mut Captions, figures: &StudySummary) -> Markup {
 fn scores(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let rows = figures.questionnaire_scores.iter().map(|one| {
         let after = asked_after(one.condition);
-        cells([&one.questionnaire, &after, &one.scores.len(), &number(one.mean, 1), &number(one.sd, 1)])
+        cells([
+            &one.questionnaire,
+            &after,
+            &one.scores.len(),
+            &number(one.mean, 1, why::NO_ANSWER),
+            &number(one.sd, 1, why::ONE_ANSWER),
+        ])
     });
     let heads = ["questionnaire", "after", "answered in full", "mean score", "standard deviation"];
     captions.table("Scores by questionnaire and condition.", &heads, &rows.collect::<Vec<_>>())
@@ -258,15 +277,17 @@ pub(super) fn robot(captions: &mut Captions, figures: &StudySummary) -> Markup {
     if groups.is_empty() {
         return nothing();
     }
-    let row = |what: &str, of: &dyn Fn(&RobotArmTotals) -> String| -> Vec<Markup> {
-        std::iter::once(what.render()).chain(groups.iter().map(|group| of(group).render())).collect()
+    let row = |what: &str, of: &dyn Fn(&RobotArmTotals) -> Markup| -> Vec<Markup> {
+        std::iter::once(what.render()).chain(groups.iter().map(of)).collect()
     };
-    let felt =
-        |what: &str, of: fn(&ArmSafetySummary) -> u64| row(what, &|group| count(group.robot.arm.as_ref().map(of)));
+    let felt = |what: &str, of: fn(&ArmSafetySummary) -> u64| {
+        row(what, &|group| count(group.robot.arm.as_ref().map(of), why::TIMED_ARM))
+    };
     let seconds = |what: &str, of: fn(&ArmSafetySummary) -> Option<f64>| {
-        row(what, &|group| number(group.robot.arm.as_ref().and_then(of), 1))
+        let why = |group: &RobotArmTotals| if group.robot.arm.is_none() { why::TIMED_ARM } else { "no contact" };
+        row(what, &|group| number(group.robot.arm.as_ref().and_then(of), 1, why(group)))
     };
-    let did = |what: &str, of: fn(&RobotArmTotals) -> u64| row(what, &|group| of(group).to_string());
+    let did = |what: &str, of: fn(&RobotArmTotals) -> u64| row(what, &|group| of(group).render());
     let mut rows = vec![
         felt("protective stops after a contact", |arm| arm.protective_stops),
         felt("stops because a joint did not follow", |arm| arm.faults),
@@ -279,7 +300,7 @@ pub(super) fn robot(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let occurs = |reason: &AbortReason| groups.iter().any(|group| group.robot.given_up.contains_key(reason));
     rows.extend(AbortReason::ALL.into_iter().filter(occurs).map(|reason| {
         let what = format!("aborted presses: {}", reason.words());
-        row(&what, &|group| count(group.robot.given_up(reason)))
+        row(&what, &|group| count(group.robot.given_up(reason), why::TIMED_ARM))
     }));
     rows.extend([
         did("times held by the wizard", |group| group.robot.held),
@@ -291,7 +312,7 @@ pub(super) fn robot(captions: &mut Captions, figures: &StudySummary) -> Markup {
         |group: &RobotArmTotals| format!("{}, {}", arm(group.kind), text::count(group.trials, "trial", "trials"));
     let heads: Vec<String> = std::iter::once("arm".to_string()).chain(groups.iter().map(head)).collect();
     let caption = html! {
-        "Sums over trials, pauses included, by arm. A timed arm has no contacts. Values of each trial are in "
+        "Sums over trials, pauses included, by arm. Values of each trial are in "
         code { "trials.csv" } "."
     };
     let table = captions.table(caption, &heads, &rows);
@@ -304,11 +325,10 @@ pub(super) fn awareness(captions: &mut Captions, figures: &StudySummary) -> Mark
         (asked(&found.counts, found.participants))
         (left_out(&found.counts))
         p {
-            "Of what could be asked, " b { (percent(found.accuracy.accuracy)) } " was known"
+            "Of what could be asked, " b { (found.accuracy.accuracy.map_or("nothing that is known".to_string(), in_percent)) } " was known"
             (interval(found.accuracy.interval)) ". “I don’t know” counts as not known."
             @if let Some(effect) = &found.assistance {
-                " With assistance a participant knew " (number(Some(100.0 * effect.difference), 1)) " percentage points more than without"
-                (interval(effect.interval)) ", in the mean of "
+                " With assistance a participant knew " (with_assistance(effect)) ", in the mean of "
                 (text::count(effect.participants, "participant", "participants")) "; practice is part of this difference, and the test in \
                 “Does assistance help?” takes it out."
             }
@@ -327,10 +347,18 @@ pub(super) fn awareness(captions: &mut Captions, figures: &StudySummary) -> Mark
         (probe_scores(captions, found))
         @if let Some(known) = &found.by_true_beliefs { (by_true_beliefs(known)) }
         @for one in &found.level_2 {
-            p { "Asked " (one.group) ": " (percent(one.accuracy)) " of " (one.n) " answers were right" (interval(one.interval)) "." } "\n"
+            p { "Asked " (one.group) ": " (one.accuracy.map_or("none".to_string(), in_percent)) " of " (one.n) " answers were right" (interval(one.interval)) "." } "\n"
         }
     };
     captions.section("What people knew", content)
+}
+
+/// "3.2 percentage points more than without", with the interval in the same direction.
+fn with_assistance(effect: &SituationAwarenessEffect) -> String {
+    let ends = effect.interval.unwrap_or([f64::NAN; 2]);
+    let (difference, ends, more) = directed(effect.difference, ends, ["more", "less"]);
+    let points = fixed(100.0 * difference, 1);
+    format!("{points} percentage points {more} than without{}", interval(effect.interval.map(|_| ends)))
 }
 
 /// Text ", interval of 95 %: …" after a share; empty without an interval.
@@ -346,7 +374,7 @@ fn asked(counts: &ProbeCounts, participants: u64) -> Markup {
             (counts.counted) " of " (text::count(counts.questions, "question", "questions")) " count, "
             (counts.unsure) " of them answered with “I don’t know”. Each weighs the inverse of the chance with which it was drawn, since \
              the assistant’s estimate had a part in choosing questions for some probes; so the results are about everything that could be asked \
-             at these times, not about what was chosen. They tell as much as " (number(Some(counts.effective), 0))
+             at these times, not about what was chosen. They tell as much as " (fixed(counts.effective, 0))
             " questions of equal weight. False beliefs: by answers to probes; they tell no causes of errors."
         }
         "\n"
@@ -383,7 +411,7 @@ fn accuracies(captions: &mut Captions, found: &ProbeSummary) -> Markup {
         ("“I don’t know”", |one| one.unsure.render()),
         ("known, %", |one| {
             let hundred = |value: f64| 100.0 * value;
-            with_interval(one.accuracy.map(hundred), one.interval.map(|ends| ends.map(hundred)), 1)
+            with_interval(one.accuracy.map(hundred), one.interval.map(|ends| ends.map(hundred)), 1, why::NO_ANSWER)
         }),
     ];
     // Results by single state aspect are only in the table of probes and in the JSON summary.
@@ -398,11 +426,12 @@ fn estimate(found: &ProbeSummary) -> Markup {
     let bracketed = |ends: Option<[f64; 2]>| ends.map_or(String::new(), |ends| format!(" ({})", range(ends, 2)));
     html! {
         p {
-            "How surely the estimate tells what is believed wrong: area under the ROC " b { (number(detection.auc, 2)) }
-            (bracketed(found.auc_interval)) ", the mean of places (" (number(detection.auc_locations, 2))
-            "; knowing only what changed since the last look gives " (number(detection.auc_baseline, 2)) ") and recipes ("
-            (number(detection.auc_recipes, 2)) "); 1 is always, 0.5 is chance. Without weights it would be "
-            (number(found.auc_unweighted, 2)) ". Expected calibration error " (number(detection.ece, 3)) (bracketed(found.ece_interval))
+            "How surely the estimate tells what is believed wrong: area under the ROC " b { (told(detection.auc, 2, why::ONE_KIND)) }
+            (bracketed(found.auc_interval)) ", the mean of places (" (told(detection.auc_locations, 2, why::ONE_KIND))
+            "; knowing only what changed since the last look gives " (told(detection.auc_baseline, 2, why::ONE_KIND)) ") and recipes ("
+            (told(detection.auc_recipes, 2, why::ONE_KIND)) "); 1 is always, 0.5 is chance. Without weights it would be "
+            (told(found.auc_unweighted, 2, why::ONE_KIND)) ". Expected calibration error " (told(detection.ece, 3, why::UNCALIBRATED))
+            (bracketed(found.ece_interval))
             ". A wrong answer is not always a false belief: where few beliefs are false, few slips of the finger lower the area much."
         }
         "\n"
@@ -413,7 +442,7 @@ fn probe_scores(captions: &mut Captions, found: &ProbeSummary) -> Markup {
     let of = &found.log_scores;
     let row = |what: &str, score: Option<f64>| {
         let gain = score.zip(of.estimate).map(|(score, estimate)| estimate - score);
-        cells([&what, &number(score, 3), &number(gain, 3)])
+        cells([&what, &number(score, 3, why::NO_VALUE), &number(gain, 3, why::NO_VALUE)])
     };
     let rows = [
         row("the estimate", of.estimate),
@@ -431,12 +460,13 @@ fn probe_scores(captions: &mut Captions, found: &ProbeSummary) -> Markup {
 }
 
 fn by_true_beliefs(known: &RecordedBeliefComparison) -> Markup {
-    let value = |value: Option<f64>| value.map_or(UNKNOWN.to_string(), |value| number(Some(value), 3));
+    let area = |value: Option<f64>| told(value, 3, why::ONE_KIND);
+    let error = |value: Option<f64>| told(value, 3, why::UNCALIBRATED);
     html! {
         p class="note" {
             "Of simulated participants it is known what they really believed. At " (known.n) " of these questions the area is "
-            (value(known.detection.auc)) " and the calibration error " (value(known.detection.ece)) " by their beliefs, "
-            (value(known.by_answers.auc)) " and " (value(known.by_answers.ece)) " by their answers; " (percent(Some(known.agreement)))
+            (area(known.detection.auc)) " and the calibration error " (error(known.detection.ece)) " by their beliefs, "
+            (area(known.by_answers.auc)) " and " (error(known.by_answers.ece)) " by their answers; " (in_percent(known.agreement))
             " of the answers agree with the beliefs."
         }
         "\n"

@@ -370,7 +370,7 @@ fn false_beliefs_are_the_same_in_replay_review_and_annotations() {
     for tier in &annotations.tiers {
         let Some(place) = tier.name.strip_prefix("false belief (estimate): ") else { continue };
         for one in &tier.annotations {
-            exported.insert((SessionTime::from_secs_f64(one.begin_s), place.to_string(), one.words.clone()));
+            exported.insert((one.begin, place.to_string(), one.words.clone()));
         }
     }
     let near = |time: SessionTime| SessionTime(time.0 / 1000);

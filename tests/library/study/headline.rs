@@ -4,7 +4,7 @@ use tomcom_core::measures::raters::BeliefSource;
 use tomcom_session::plan::QuestionnaireItemKind;
 use tomcom_session::questionnaire::AnswerValue;
 use tomcom_study::arm_comparison::ContrastVerdict;
-use tomcom_study::headline::{mixed_sources, primary_outcome};
+use tomcom_study::headline::{doubts, mixed_sources, primary_outcome};
 use tomcom_study::pass::describe;
 use tomcom_study::trial_statistics::{AskedItem, QuestionnaireAnswer, TrialStatistics};
 
@@ -30,6 +30,39 @@ fn the_first_sentence_is_the_primary_outcome_and_says_no_more_than_its_interval(
     one.retain(|trial| trial.condition == Condition::None);
     let told = primary_outcome(&summary(&one));
     assert!(told[0].ends_with("unassisted 20.0; one condition, so nothing is compared."), "{told:?}");
+}
+
+/// Hardly an error: the model of logarithms sees half an error more in each trial, and the sentence says so.
+#[test]
+fn a_ratio_of_few_events_is_called_not_reliable_beside_it() {
+    let few = trials(&[[0, 2], [0, 3], [0, 1], [0, 2]], &[[2, 0], [4, 0], [1, 0], [3, 1]]);
+    let figures = summary(&few);
+    let found = figures.arms.as_ref().expect("a comparison");
+    let [one] = &found.contrasts[..] else { panic!("one contrast") };
+    let doubt = one.doubt.expect("a doubt");
+    assert!(doubt.few_events.is_some_and(|mean| mean < 1.0), "{doubt:?}");
+    let [sentence] = &primary_outcome(&figures)[..] else { panic!("one contrast") };
+    assert!(sentence.contains(&format!("ratio {:.2} (not reliable: errors are few", one.ratio)), "{sentence}");
+    let why = &doubts(found)[0];
+    assert!(why.contains("Bolker et al. 2009") && why.contains("the negative binomial model"), "{why}");
+    assert!(describe(&figures).contains(why) && page(&figures, &few).contains("not reliable: errors are few"));
+    let many = trials(&[[40, 20], [42, 18], [38, 22]], &[[20, 40], [22, 44], [18, 36]]);
+    assert_eq!(summary(&many).arms.expect("a comparison").contrasts[0].doubt, None);
+}
+
+/// An effect against assistance: estimate and interval are told as "more".
+#[test]
+fn an_effect_and_its_interval_have_one_direction() {
+    let worse =
+        trials(&[[10, 20], [12, 18], [11, 22], [9, 12], [14, 19]], &[[20, 10], [15, 14], [18, 16], [21, 12], [13, 12]]);
+    let figures = summary(&worse);
+    let found = figures.effects[0].reduction.expect("an estimate");
+    assert!(found.estimate < 0.0 && found.high.is_finite(), "{found:?}");
+    let ends = format!("{:.1} to {:.1} more", -100.0 * found.high, -100.0 * found.low);
+    let told = describe(&figures);
+    assert!(told.contains(&format!("{:.1} more errors", -100.0 * found.estimate)) && told.contains(&ends), "{told}");
+    let page = page(&figures, &worse);
+    assert!(page.contains(&format!("%: {}", ends.replace('-', "\u{2212}"))), "{page}");
 }
 
 /// Three conditions: one sentence says what their contrasts show together, and no interval contradicts it.

@@ -1,8 +1,12 @@
 //! The study against its plan: plans that were frozen before it, and trials that have no recording.
 
-use tomcom_session::plan::PlanSpec;
+use tomcom_session::header::CodeCorrection;
+use tomcom_session::plan::listed;
+use tomcom_study::figures::CorrectedRecording;
 use tomcom_study::files::pool_file::{freeze, read_frozen};
-use tomcom_study::frozen_plan::{FrozenDefinition, FrozenPlan, PlaceInPlan, PreregistrationCheck, RecordedPlan};
+use tomcom_study::frozen_plan::{
+    FrozenDefinition, FrozenPlan, PlaceInPlan, PlanVersions, PreregistrationCheck, RecordedPlan,
+};
 use tomcom_study::planned_trial::{MissingTrials, in_words, missing_trials};
 
 use crate::support::*;
@@ -32,13 +36,13 @@ fn a_recording_of_another_plan_is_none_of_a_participant_of_the_frozen_one() {
     let told = differences(&frozen, &all);
     let code = &frozen.participants[2];
     assert_eq!(told, ["1 recording is of the plan \"another\""]);
-    let check = PreregistrationCheck::new("0".to_string(), &frozen, &all, 0);
+    let check = PreregistrationCheck::new("0".to_string(), &frozen, &all, &PlanVersions::default(), 0);
     assert_eq!(check.to_come, std::slice::from_ref(code));
     assert!(check.words().ends_with(&format!("1 participant has no recording so far: {code}.")), "{}", check.words());
 }
 
 fn differences(frozen: &FrozenPlan, recordings: &[RecordedPlan]) -> Vec<String> {
-    PreregistrationCheck::new("0".to_string(), frozen, recordings, 0).differences
+    PreregistrationCheck::new("0".to_string(), frozen, recordings, &PlanVersions::default(), 0).differences
 }
 
 #[test]
@@ -98,9 +102,9 @@ fn each_difference_is_told() {
     assert_eq!(found, ["20 recordings are of the plan \"arms\""]);
     differs(|plan| plan.plan_digest = "0".to_string(), "20 recordings are of another version of the plan");
     let running = FrozenPlan { participants: [&plan.participants[..], &["P99".to_string()]].concat(), ..plan.clone() };
-    let words = PreregistrationCheck::new("0".to_string(), &running, &all, 0).words();
+    let words = PreregistrationCheck::new("0".to_string(), &running, &all, &PlanVersions::default(), 0).words();
     assert!(words.starts_with("So far as preregistered: ") && words.ends_with("no recording so far: P99."), "{words}");
-    let ended = PreregistrationCheck::new("0".to_string(), &plan, &all, 3).differences;
+    let ended = PreregistrationCheck::new("0".to_string(), &plan, &all, &PlanVersions::default(), 3).differences;
     assert_eq!(ended, ["the wizard ended 3 trials that count early"]);
     differs(|plan| drop(plan.participants.pop()), "1 participant is not in the frozen plan: P20");
     let alone = [&all[..], &[RecordedPlan { participant: "P01".to_string(), plan: None, place: None }]].concat();
@@ -123,7 +127,7 @@ fn planned_trials(participants: std::ops::Range<u32>) -> Vec<RecordedPlan> {
 #[test]
 fn a_whole_study_misses_nothing_and_a_lost_recording_is_named() {
     let mut all = planned_trials(0..4);
-    assert_eq!((missing_trials(&all), in_words(&[])), (Vec::new(), None));
+    assert_eq!((missing_trials(&all), in_words(&[], &[])), (Vec::new(), None));
     all.remove(3);
     let missing = missing_trials(&all);
     let second = |trials: &[u32]| MissingTrials {
@@ -133,7 +137,7 @@ fn a_whole_study_misses_nothing_and_a_lost_recording_is_named() {
         trials: trials.to_vec(),
     };
     assert_eq!(missing, [second(&[2])]);
-    assert_eq!(in_words(&missing).as_deref(), Some("1 trial of the plan \"short\" has no recording: P02 trial 2"));
+    assert_eq!(in_words(&missing, &[]).as_deref(), Some("1 trial of the plan \"short\" has no recording: P02 trial 2"));
     // Practice is no trial; a trial that was done twice is one.
     all.retain(|one| one.participant != "P02");
     all.push(recording("short", 1, None, 2));
@@ -150,7 +154,7 @@ fn participants_without_a_recording_are_found_before_the_last_and_plans_are_told
     all.push(recording("short-tutorial", 0, None, 0));
     let missing = missing_trials(&all);
     assert_eq!(
-        in_words(&missing).as_deref(),
+        in_words(&missing, &[]).as_deref(),
         Some(
             "2 trials of the plan \"other\" have no recording: P01 trials 1, 2; 4 trials of the plan \"short\" have no recording: \
              P01 trials 1, 2; P02 trials 1, 2"
@@ -160,12 +164,12 @@ fn participants_without_a_recording_are_found_before_the_last_and_plans_are_told
         (missing[0].plan.as_str(), missing[1].plan.as_str(), &missing[1].code),
         ("other", "short", &Some("P01".to_string()))
     );
-    let words = in_words(&missing_trials(&planned_trials(20..21))).expect("missing");
+    let words = in_words(&missing_trials(&planned_trials(20..21)), &[]).expect("missing");
     assert!(words.starts_with("40 trials of the plan \"short\" have no recording: P01 trials 1, 2; "), "{words}");
     assert!(words.ends_with("P08 trials 1, 2; and of 12 more participants"), "{words}");
     // Codes that are no numbers are known from recordings alone.
     let named = RecordedPlan { participant: "Anna".to_string(), ..recording("short", 1, Some(1), 2) };
-    let words = in_words(&missing_trials(&[named])).expect("missing");
+    let words = in_words(&missing_trials(&[named]), &[]).expect("missing");
     assert!(words.ends_with("the plan's participant 1 trials 1, 2; Anna trial 2"), "{words}");
 }
 
@@ -181,12 +185,24 @@ fn a_recording_whose_code_was_corrected_is_of_the_participant_who_has_the_code()
     all.extend([corrected("P03", 1), recording("short", 1, Some(2), 2), recording("short", 2, Some(2), 2)]);
     let missing = missing_trials(&all);
     let told = "1 trial of the plan \"short\" has no recording: P02 trial 1";
-    assert_eq!(in_words(&missing).as_deref(), Some(told));
+    assert_eq!(in_words(&missing, &[]).as_deref(), Some(told));
     all.push(corrected("P09", 2));
     let missing = missing_trials(&all);
-    let told = "2 trials of the plan \"short\" have no recording: P02 trial 1; P09 trial 1";
-    assert_eq!(in_words(&missing).as_deref(), Some(told));
+    let told = "2 trials of the plan \"short\" have no recording: P02 trial 1; P09 (a corrected code, perhaps none of the plan) trial 1";
+    assert_eq!(in_words(&missing, &[]).as_deref(), Some(told));
     assert_eq!(missing[1].participant, None, "its number in the plan is not known");
+    let correction = |before: &str, after: &str| CorrectedRecording {
+        recording: format!("short-{before}-1"),
+        correction: CodeCorrection {
+            before: before.to_string(),
+            after: after.to_string(),
+            why: String::new(),
+            by: String::new(),
+            at: String::new(),
+        },
+    };
+    let words = in_words(&missing, &[correction("P02", "P03"), correction("P05", "P04")]).expect("missing");
+    assert!(words.starts_with(told) && words.contains("short-P02-1 (P02 is P03); tomcom correct"), "{words}");
 }
 
 #[test]
@@ -196,22 +212,28 @@ fn what_changed_in_a_plan_since_a_recording_is_named() {
     let wanted = WantedRecording { participant: 0, slot: 1, attempt: 1, instructed: true };
     let (spec, trial) = before.settings(wanted);
     let header = LogHeader::new(spec, trial, files.kitchen.layout.clone(), files.kitchen.recipes.clone());
+    let header = LogHeader { started: Some("2026-03-14T10:00:00Z".to_string()), ..header };
     let changed = |change: fn(&mut SessionSetup)| {
         let mut now = files.clone();
         change(&mut now);
         let study = now.study().expect("a plan");
         assert_ne!(study.digest, before.digest);
-        study.changed_since(&header, [&now.kitchen.layout, &now.kitchen.recipes]).join(", ")
+        listed(&study.changed_since(&header, [&now.kitchen.layout, &now.kitchen.recipes]))
     };
-    let plan = |now: &mut SessionSetup, change: fn(&mut PlanSpec)| change(now.spec.plan.as_mut().expect("a plan"));
     assert!(changed(|now| now.kitchen.recipes.text.push_str("# a dish")).ends_with("recipes/sushi.toml"));
-    assert_eq!(changed(|now| now.spec.trial.presses = 100), "[trial]");
-    let told = changed(|now| now.questionnaires[0].title.push('!'));
-    assert_eq!(told, "what participants are told, taught or asked");
-    let mut now = files.clone();
-    plan(&mut now, |plan| plan.block = Some(4));
-    let study = now.study().expect("a plan");
-    assert_eq!(study.changed_since(&header, [&now.kitchen.layout, &now.kitchen.recipes]), ["[plan]"]);
+    let presses = files.spec.trial.presses;
+    assert_eq!(changed(|now| now.spec.trial.presses = 100), format!("trial.presses from {presses} to 100"));
+    let asked = &files.questionnaires[0];
+    assert_eq!(
+        changed(|now| now.questionnaires[0].title.push('!')),
+        format!("questionnaire {}.title from \"{}\" to \"{}!\"", asked.name, asked.title, asked.title)
+    );
+    assert_eq!(
+        changed(|now| now.spec.plan.as_mut().expect("a plan").aims.margin = 1.5),
+        "plan.aims.margin from 1.25 to 1.5"
+    );
+    // What a recording does not have.
+    assert!(changed(|now| now.spec.plan.as_mut().expect("a plan").block = Some(4)).contains("block, consent"));
 }
 
 /// Three conditions made of a plan that asks after its two trials: the last questionnaire would be lost without a word.

@@ -77,7 +77,7 @@ fn few_participants_have_no_r_among_the_main_results() {
         let summary = summary(&trials);
         let page = super::page(&summary, &trials);
         assert!(!page.contains("&lt; 0.001"), "p < 0.001 is not broken over two lines");
-        page.split("class=\"card\"").nth(3).expect("three cards").split("</div>").next().expect("a card").to_string()
+        page.split("class=\"card\"").nth(4).expect("four cards").split("</div>").next().expect("a card").to_string()
     };
     let few = card(6);
     assert!(few.contains("6 participants with both trials are fewer than 8") && !few.contains("r\u{a0}="), "{few}");
@@ -165,9 +165,9 @@ fn methods_tell_how_trials_ended_with_which_arm_and_what_was_computed() {
     assert!(page.contains("4 after the set number of presses, 1 after the set time, 1 early by the wizard."));
     assert!(page.contains("timed in 5 trials and simulated with contact forces in 1 trial; the statistics pool them."));
     assert!(page.contains("the hypothetical signals of each concept were recomputed"));
-    assert!(
-        page.contains("<td>contacts with a person</td><td>\u{2013}</td><td>3</td>") && page.contains("<td>17.2</td>")
-    );
+    let unknown = "<span class=\"unknown\" title=\"a timed arm feels nothing\">\u{2013}</span>";
+    assert!(page.contains(&format!("<td>contacts with a person</td><td>{unknown}</td><td>3</td>")), "{page}");
+    assert!(page.contains(" \u{2013}:\u{a0}a timed arm feels nothing.") && page.contains("<td>17.2</td>"), "{page}");
 }
 
 /// Of people it is estimated what they believed, until two raters have coded every error.

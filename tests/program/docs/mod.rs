@@ -250,14 +250,16 @@ fn the_paper_has_its_sections_and_no_more_words_than_the_journal_takes() {
 }
 
 #[test]
-fn help_leads_to_pages_that_are_there() {
-    let help = |command: &str| run(&format!("tomcom {command} --help"), Path::new("."), "help");
+fn help_leads_to_pages_that_are_there_and_breaks_no_example_at_80_columns() {
+    let help = |command: &str| run(&format!("COLUMNS=80 tomcom {command} --help"), Path::new("."), "help");
     let overview = help("");
     let commands = overview.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
     let names = commands.filter_map(|line| line.strip_prefix("  ")?.split(' ').next().filter(|name| !name.is_empty()));
     let without_page = ["completions", "man", "help"];
     for command in names.filter(|name| !without_page.contains(name)).chain([""]) {
         let told = help(command);
+        let is_broken = |line: &&str| line.chars().count() > 80 || line.starts_with("--");
+        assert_eq!(told.lines().find(is_broken), None, "tomcom {command} --help");
         let words = told.split(|c: char| c.is_whitespace() || c == ',');
         let pages: Vec<&str> = words.filter(|word| word.starts_with("docs/")).collect();
         assert!(!pages.is_empty(), "tomcom {command} --help names no page");

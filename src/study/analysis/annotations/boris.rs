@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::{AnnotationTier, CODES, RecordingAnnotations};
+use tomcom_core::base::time::SessionTime;
 
 /// How a file begins that nobody has saved in BORIS since, which writes projects in one line.
 pub const UNTOUCHED: &str = "{\n  \"behavioral_categories\"";
@@ -26,7 +27,7 @@ pub fn text(annotations: &RecordingAnnotations) -> String {
     let mut behaviours: Vec<(String, bool, Vec<String>)> =
         vec![(CODE.to_string(), false, annotations.code_words.clone())];
     let mut subjects: Vec<String> = Vec::new();
-    let mut events: Vec<(f64, String, String, String)> = Vec::new();
+    let mut events: Vec<(SessionTime, String, String, String)> = Vec::new();
     for tier in &annotations.tiers {
         let (subject, behaviour) = event_of(tier);
         if !subject.is_empty() && !subjects.contains(&subject) {
@@ -37,9 +38,9 @@ pub fn text(annotations: &RecordingAnnotations) -> String {
         }
         for annotation in &tier.annotations {
             let words = modifier(&annotation.words);
-            events.push((annotation.begin_s, subject.clone(), behaviour.clone(), words.clone()));
+            events.push((annotation.begin, subject.clone(), behaviour.clone(), words.clone()));
             if tier.lasts {
-                events.push((annotation.end_s, subject.clone(), behaviour.clone(), words));
+                events.push((annotation.end, subject.clone(), behaviour.clone(), words));
             }
         }
     }
@@ -50,7 +51,7 @@ pub fn text(annotations: &RecordingAnnotations) -> String {
             values.push(words.clone());
         }
     }
-    events.sort_by(|a, b| a.0.total_cmp(&b.0));
+    events.sort_by_key(|(time, ..)| *time);
     let ethogram = behaviours.iter().enumerate().map(|(index, (name, lasts, values))| {
         let modifiers =
             json!({ "0": { "name": "", "description": "", "type": 0, "ask at stop": false, "values": values } });
@@ -86,7 +87,11 @@ fn modifier(words: &str) -> String {
     words.replace(" (", ", ").replace(')', "").trim().to_string()
 }
 
-fn observation(annotations: &RecordingAnnotations, date: &str, events: Vec<(f64, String, String, String)>) -> Value {
+fn observation(
+    annotations: &RecordingAnnotations,
+    date: &str,
+    events: Vec<(SessionTime, String, String, String)>,
+) -> Value {
     let round = |seconds: f64| (seconds * 1e3).round() / 1e3;
     let (mut files, mut offsets, mut lengths, mut rates, mut seen, mut heard) =
         (Map::new(), Map::new(), Map::new(), Map::new(), Map::new(), Map::new());
@@ -107,9 +112,10 @@ fn observation(annotations: &RecordingAnnotations, date: &str, events: Vec<(f64,
     let is_filmed = !annotations.films.is_empty();
     let events: Vec<Value> = events
         .into_iter()
+        .map(|(time, subject, behaviour, words)| (time.ms() as f64 / 1e3, subject, behaviour, words))
         .map(|(time_s, subject, behaviour, words)| match is_filmed {
-            true => json!([round(time_s), subject, behaviour, words, "", "NA"]),
-            false => json!([round(time_s), subject, behaviour, words, ""]),
+            true => json!([time_s, subject, behaviour, words, "", "NA"]),
+            false => json!([time_s, subject, behaviour, words, ""]),
         })
         .collect();
     json!({

@@ -23,15 +23,14 @@ use tomcom_session::{Event, TimestampedEvent};
 /// Prefix of tiers, and of subjects, with a rater's codes: "codes R1".
 const CODES: &str = "codes ";
 const ERRORS: &str = "errors";
-/// How long an annotation of a moment lasts if nothing follows on its tier, in seconds.
-const MOMENT_S: f64 = 0.5;
+/// How long a moment is shown if nothing follows on its tier.
+const MOMENT: SessionTime = SessionTime(1_500_000_000);
 
-/// An annotation: from when to when, and in which words. A moment ends when it begins.
+/// An annotation: from when to when, on the time line, and in which words.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Annotation {
-    /// In seconds of the time line.
-    pub begin_s: f64,
-    pub end_s: f64,
+    pub begin: SessionTime,
+    pub end: SessionTime,
     pub words: String,
 }
 
@@ -39,7 +38,7 @@ pub struct Annotation {
 #[derive(Clone, Debug, PartialEq)]
 pub struct AnnotationTier {
     pub name: String,
-    /// Whether annotations last; else they are moments.
+    /// Whether annotations last; else they are moments, and end when they are shown no more.
     pub lasts: bool,
     pub annotations: Vec<Annotation>,
 }
@@ -123,7 +122,7 @@ impl AnnotationCollector {
         let kitchen = &follower.session.kitchen;
         let end = self.end;
         let moments = |name: String, all: Vec<(SessionTime, String)>| {
-            let annotations: Vec<_> = all.into_iter().map(|(time, words)| (time, time, words)).collect();
+            let annotations: Vec<_> = all.into_iter().map(|(time, words)| (time, time + MOMENT, words)).collect();
             (name, false, annotations)
         };
         let spells = |name: String, all: Vec<(SessionTime, Option<SessionTime>, String)>| {
@@ -131,17 +130,21 @@ impl AnnotationCollector {
             (name, true, lasting)
         };
         let [human, robot] = Agent::BOTH.map(Agent::index).map(|index| self.presses[index].clone());
-        let times: BTreeMap<u64, SessionTime> = follower.judged.iter().map(|press| (press.seq, press.time)).collect();
-        let time_of = |press: u64| times.get(&press).copied();
+        let judged = follower.judged.iter().enumerate();
+        let spans: BTreeMap<u64, (SessionTime, SessionTime)> = judged
+            .map(|(index, press)| (press.seq, (press.time, follower.judged_until(index).unwrap_or(end))))
+            .collect();
+        // A moment, which is shown for as long as the error lasts.
+        let of_press = |press: u64, words: String| spans.get(&press).map(|(begin, end)| (*begin, *end, words));
         let listed = ListedError::all(follower);
         let errors = listed.iter().filter_map(|error| {
             let why = if error.why.is_empty() { String::new() } else { format!(" ({})", error.why) };
-            Some((time_of(error.press)?, format!("error {}: {}{why}", error.error, error.words())))
+            of_press(error.press, format!("error {}: {}{why}", error.error, error.words()))
         });
         let mut tiers = vec![
             moments("presses human".to_string(), human),
             moments("presses robot".to_string(), robot),
-            moments(ERRORS.to_string(), errors.collect()),
+            (ERRORS.to_string(), false, errors.collect()),
         ];
         if !blind {
             tiers.push(spells("signals".to_string(), self.signals));
@@ -158,8 +161,8 @@ impl AnnotationCollector {
             let notes = self.notes.into_iter().map(|(_, time, words)| (time, words));
             tiers.push(moments("notes".to_string(), notes.collect()));
             for (rater, codes) in codes {
-                let coded = codes.0.iter().filter_map(|(press, code)| Some((time_of(*press)?, code_words(code))));
-                tiers.push(moments(format!("{CODES}{rater}"), coded.collect()));
+                let coded = codes.0.iter().filter_map(|(press, code)| of_press(*press, code_words(code)));
+                tiers.push((format!("{CODES}{rater}"), false, coded.collect()));
             }
         }
         let master = films.iter().map(|(_, film)| film).min_by(|a, b| a.offset_s.total_cmp(&b.offset_s));
@@ -170,7 +173,8 @@ impl AnnotationCollector {
                 let (begin_s, end_s) = (on_line(begin), on_line(end));
                 let is_shown = if lasts { end_s > 0.0 } else { begin_s >= 0.0 };
                 before_film += usize::from(!is_shown);
-                is_shown.then_some(Annotation { begin_s: begin_s.max(0.0), end_s, words })
+                let [begin, end] = [begin_s, end_s].map(SessionTime::from_secs_f64);
+                is_shown.then_some(Annotation { begin, end, words })
             });
             let annotations = placed.collect();
             AnnotationTier { name, lasts, annotations }
@@ -212,12 +216,10 @@ impl AnnotationTier {
     fn separate_ms(&self) -> Vec<(u64, u64, &str)> {
         let mut placed: Vec<(u64, u64, &str)> = Vec::new();
         for (index, annotation) in self.annotations.iter().enumerate() {
-            let ms = |seconds: f64| (seconds * 1e3).round() as u64;
             let after = placed.last().map_or(0, |(_, end, _)| *end);
-            let begin = ms(annotation.begin_s).max(after);
-            let next = self.annotations.get(index + 1).map_or(u64::MAX, |next| ms(next.begin_s));
-            let end = if self.lasts { ms(annotation.end_s) } else { ms(annotation.begin_s + MOMENT_S) };
-            placed.push((begin, end.min(next).max(begin + 1), &annotation.words));
+            let begin = annotation.begin.ms().max(after);
+            let next = self.annotations.get(index + 1).map_or(u64::MAX, |next| next.begin.ms());
+            placed.push((begin, annotation.end.ms().min(next).max(begin + 1), &annotation.words));
         }
         placed
     }

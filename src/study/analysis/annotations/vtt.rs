@@ -5,18 +5,13 @@ use super::RecordingAnnotations;
 /// How a file begins that this program wrote.
 pub const UNTOUCHED: &str = "WEBVTT written by tomcom export";
 
-/// How long a moment stands in the picture, in seconds.
-const SHOWN_S: f64 = 1.5;
-
 /// The text of the file.
 pub fn text(annotations: &RecordingAnnotations) -> String {
     let mut cues: Vec<(u64, u64, String)> = Vec::new();
     for tier in &annotations.tiers {
         for annotation in &tier.annotations {
-            let end_s = if tier.lasts { annotation.end_s } else { annotation.begin_s + SHOWN_S };
-            let ms = |seconds: f64| (seconds * 1e3).round() as u64;
-            let begin = ms(annotation.begin_s);
-            cues.push((begin, ms(end_s).max(begin + 1), format!("{}: {}", tier.name, annotation.words)));
+            let begin = annotation.begin.ms();
+            cues.push((begin, annotation.end.ms().max(begin + 1), format!("{}: {}", tier.name, annotation.words)));
         }
     }
     cues.sort();

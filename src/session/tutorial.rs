@@ -48,6 +48,8 @@ pub enum TutorialStepKind {
     Question,
     /// The robot's hand moves as in a trial: it presses buttons one after another, again and again.
     Robot,
+    /// The robot's area says one after the other what it can say in a trial.
+    RobotSays,
     /// A question of a freeze probe, to practise; left out where the session has no probes.
     Probe,
 }
@@ -472,7 +474,8 @@ impl TutorialState {
         // tutorial: the recipes have to be remembered.
         self.are_cards_hidden = tutorial.steps.get(step).is_some_and(TutorialStep::is_timed) && self.is_done();
         let needs_nothing = tutorial.steps.get(step).is_some_and(|step| match step.kind {
-            TutorialStepKind::Text | TutorialStepKind::Signal | TutorialStepKind::Robot => true,
+            TutorialStepKind::Text | TutorialStepKind::Signal => true,
+            TutorialStepKind::Robot | TutorialStepKind::RobotSays => true,
             TutorialStepKind::Recipes => !step.is_timed(),
             TutorialStepKind::Press | TutorialStepKind::Order => false,
             TutorialStepKind::Question | TutorialStepKind::Probe => false,

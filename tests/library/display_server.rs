@@ -4,7 +4,7 @@ use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpStream};
 use std::time::{Duration, Instant};
 
-use tomcom_devices::display::DisplayServer;
+use tomcom_devices::display::{DisplayServer, PageInput};
 use tomcom_devices::sight::page_language::DisplayWords;
 use tomcom_session::wall_display::DisplaySpec;
 
@@ -229,6 +229,26 @@ fn a_page_that_is_asked_for_a_code_may_wait_and_is_answered() {
         page.say(&json!({"kind": "ping", "t": t, "took": null, "hidden": true}));
         assert_eq!(page.hear("pong").map(|pong| pong["t"] == f64::from(t)), Some(true));
     }
+}
+
+#[test]
+fn a_visible_page_that_says_nothing_is_lost_though_its_browser_answers() {
+    let (mut display, address) = serve(LOCAL);
+    let mut page = page(address);
+    assert_eq!(page.joins("participant"), Some(true));
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
+    let mut next = |page: &mut RawPage| loop {
+        page.pong();
+        let waited = runtime.block_on(async { tokio::time::timeout(Duration::from_millis(100), display.next()).await });
+        if let Ok(input) = waited {
+            return input.expect("the display is there");
+        }
+    };
+    assert!(matches!(next(&mut page), PageInput::Connected { .. }));
+    assert!(matches!(next(&mut page), PageInput::Lost { .. }));
+    // Its connection is kept: it is back as soon as it says something.
+    page.say(&json!({"kind": "ping", "t": 1.0, "took": null}));
+    assert!(matches!(next(&mut page), PageInput::Connected { .. }));
 }
 
 #[test]

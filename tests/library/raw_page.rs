@@ -48,6 +48,11 @@ impl RawPage {
         let _ = self.0.write_all(&frame);
     }
 
+    /// What a browser answers by itself to a ping, with a mask of zeros.
+    pub fn pong(&mut self) {
+        let _ = self.0.write_all(&[0x8a, 0x80, 0, 0, 0, 0]);
+    }
+
     /// The next message of this kind; none, if the connection ends before.
     pub fn hear(&mut self, kind: &str) -> Option<Value> {
         self.hear_one_of(&[kind])

@@ -25,11 +25,16 @@ ARC_MINUTES, DISTANCE_M = 17, 3
 SIZES = [(1920, 1080), (1280, 800), (3840, 2160)]
 # Telephones in the hand, in pixels of CSS: that for which the layout is made, and a smaller one, on which everything is smaller.
 UPRIGHT, TOUCH_PX, CAPITALS_PX = [(390, 844), (360, 640)], 44, 6.5
+# Least width of what the robot holds, wherever its hand stands.
+HELD_PX = 32
 
-MEASURE = """([states, DISTANCE_M]) => Object.entries(states).map(([name, sight]) => {
+# So far away at most, in hundredths of the stage's width, a reason stands from what was pressed.
+NEAR_EM = 6
+
+MEASURE = """([states, DISTANCE_M, NEAR_EM]) => Object.entries(states).map(([name, sight]) => {
   Stage.show(sight, () => 17);
   for (const choice of (sight.probe && sight.probe.touched) || []) Probe.touch({ believe: choice });
-  const SLACK = 1, found = [], stage = document.getElementById("stage").getBoundingClientRect();
+  const SLACK = 1, found = [], stageMade = document.getElementById("stage"), stage = stageMade.getBoundingClientRect();
   const isSeen = (made) => made.checkVisibility({ opacityProperty: true, visibilityProperty: true });
   const box = (made) => made.getBoundingClientRect();
   const meets = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > SLACK && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > SLACK;
@@ -58,7 +63,7 @@ MEASURE = """([states, DISTANCE_M]) => Object.entries(states).map(([name, sight]
     if (Boolean(over(a.made)) !== Boolean(over(b.made))) continue;
     if (meets(a, b)) found.push(`"${a.said}" meets "${b.said}"`);
   }
-  const solid = [...document.querySelectorAll(".pill, .spot.order, .shelf, .spot .furniture, .key, .tag, .flash, .recipe.open, .instruction .card")].filter(isSeen);
+  const solid = [...document.querySelectorAll(".pill, .spot.order, .shelf, .spot .furniture, .key, .tag, .flash, .recipe.open, .bin, .instruction .card")].filter(isSeen);
   const related = (a, b) => a.contains(b) || b.contains(a);
   for (const text of texts.filter(({ made }) => !over(made))) for (const made of solid) {
     if (!related(made, text.made) && meets(text, box(made)) && !(made.matches(".furniture") && made.parentNode.contains(text.made))) {
@@ -80,15 +85,29 @@ MEASURE = """([states, DISTANCE_M]) => Object.entries(states).map(([name, sight]
       if (meets(box(made), { left: left - frame, right: right + frame, top: top - frame, bottom: bottom + frame })) found.push(`${made.textContent} touches the frame of an order`);
     }
   }
-  // The frame of a highlighted place goes around texts, never through them.
-  for (const made of document.querySelectorAll(".highlight")) {
-    const style = getComputedStyle(made, "::before"), own = box(made), px = (name) => parseFloat(style[name]);
-    const frame = { left: own.left + px("left"), right: own.right - px("right"), top: own.top + px("top"), bottom: own.bottom - px("bottom") };
-    for (const text of texts) if (meets(text, frame) && !inside(text, frame)) found.push(`the frame crosses "${text.said}"`);
+  // A frame around something goes around texts, never through them: not the line of its border, its outline, or its inner lines.
+  const grown = (a, by) => ({ left: a.left - by, right: a.right + by, top: a.top - by, bottom: a.bottom + by });
+  const bands = (made, part) => {
+    const style = getComputedStyle(made, part), own = box(made), px = (name) => parseFloat(style[name]) || 0;
+    if (part && style.content === "none") return [];
+    const edge = part ? { left: own.left + px("left"), right: own.right - px("right"), top: own.top + px("top"), bottom: own.bottom - px("bottom") } : own;
+    const border = px("borderTopWidth"), lines = Math.max(0, ...[...style.boxShadow.matchAll(/0px 0px 0px ([0-9.]+)px inset/g)].map((match) => Number(match[1])));
+    const outline = style.outlineStyle === "none" ? 0 : px("outlineWidth"), offset = px("outlineOffset");
+    return [...(border ? [[edge, grown(edge, -border - lines)]] : []), ...(outline ? [[grown(edge, offset + outline), grown(edge, offset)]] : [])];
+  };
+  for (const made of document.querySelectorAll(".highlight, .framed, .hinted, .intended")) for (const part of [null, "::before"]) for (const [outer, inner] of bands(made, part)) {
+    for (const text of texts) if (!over(text.made) && !text.made.matches(".key") && meets(text, outer) && !inside(text, inner)) found.push(`the frame of ${made.className} crosses "${text.said}"`);
   }
   // A reason hides nothing that is pressed next, a recipe nothing that the robot does.
   for (const why of [...document.querySelectorAll(".why")].filter((made) => isSeen(made) && made.textContent)) {
     for (const made of solid.filter((one) => !one.matches(".flash"))) if (meets(box(why), box(made))) found.push(`"${why.textContent}" hides ${made.className} ${made.textContent || made.parentNode.className}`);
+  }
+  // It stands at what was pressed.
+  const press = sight.presses[0], line = document.querySelector(".why.says");
+  if (press && press.why) {
+    const a = box(line), b = box(document.querySelectorAll("storage" in press.at ? ".shelf" : ".spot")["storage" in press.at ? press.at.storage : press.at.location]);
+    const away = Math.hypot(Math.max(0, b.left - a.right, a.left - b.right), Math.max(0, b.top - a.bottom, a.top - b.bottom)) / parseFloat(getComputedStyle(stageMade).fontSize);
+    if (away > NEAR_EM) found.push(`a reason is ${away.toFixed(1)} em away from what was pressed`);
   }
   const open = document.querySelector(".recipe.open"), theirs = document.querySelector(".zone.robot");
   if (open && meets(box(open), box(theirs))) found.push("the recipe hides the robot's side");
@@ -118,18 +137,22 @@ MEASURE = """([states, DISTANCE_M]) => Object.entries(states).map(([name, sight]
     return [`"${said}"`, (ruler.measureText("H").actualBoundingBoxAscent / 100) * parseFloat(fontSize)];
   }));
   const labels = [...document.querySelectorAll("#stage [aria-label]")].map((made) => made.getAttribute("aria-label"));
-  return { name, found: [...new Set(found)], minutes, least, lowest, said: [...texts.map(({ said }) => said), ...labels] };
+  const [choice] = [...document.querySelectorAll(".probing .choice")].map(box);
+  return { name, found: [...new Set(found)], minutes, least, lowest, choice: choice && [choice.left, choice.top], said: [...texts.map(({ said }) => said), ...labels] };
 })"""
 
 
-# The robot's hand at each place, as it is drawn there, and what it covers.
+# The robot's hand at each place, as it is drawn there, what it covers, and whether it is everywhere as large.
 HAND = """async () => {
   const stage = document.getElementById("stage").getBoundingClientRect(), found = [];
   const meets = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1.5 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 1.5;
+  const sizes = new Set();
   for (const [name, x, y] of PLACES) {
     Robot.move({ x, y, down: 0 });
     await new Promise((then) => setTimeout(then, 420));
     if (document.querySelector(".robot-hand.below")) continue;
+    sizes.add(document.querySelector(".robot-hand .item").getBoundingClientRect().width.toFixed(1));
+    if (sizes.size > 1 || Number([...sizes][0]) < LEAST_PX) return [name, [`a hand whose item is ${[...sizes]} px wide`]];
     const drawn = [...document.querySelectorAll(".gripper svg > g > *")].map((part) => part.getBoundingClientRect());
     const seen = [...document.querySelectorAll(".name, .pill, .key, .tag, .spot.order, .shelf, .spot:not(.robot_hand) .furniture, .zone h2, .status span")].filter((made) => made.checkVisibility());
     for (const made of seen) if (drawn.some((part) => meets(part, made.getBoundingClientRect()))) found.push(`${made.className} "${made.textContent}"`.trim());
@@ -205,12 +228,16 @@ def main():
                             if page.ask("document.querySelectorAll('.highlight').length !== 1 || !document.querySelector('.robot-hand.highlight')"):
                                 failed.setdefault("a signal about the robot's hand is not at the hand", []).append(f"{kitchen} {language} {size[0]}x{size[1]}")
                             show(page, every["empty"])
-                            covered = page.ask(HAND.replace("PLACES", json.dumps(places(kitchen))))
+                            covered = page.ask(HAND.replace("PLACES", json.dumps(places(kitchen))).replace("LEAST_PX", str(HELD_PX)))
                             if covered:
                                 failed.setdefault(f"the robot's hand at {covered[0]} covers {covered[1]}", []).append(f"{kitchen} {language} {size[0]}x{size[1]}")
-                        for measured in page.page.evaluate(MEASURE, [every, DISTANCE_M]):
+                        stands = {}
+                        for measured in page.page.evaluate(MEASURE, [every, DISTANCE_M, NEAR_EM]):
                             looked += 1
                             name, found = measured["name"], measured["found"] + too_small(size, language, measured) + of_the_page(measured, language, every[measured["name"]], here)
+                            stands[name] = measured["choice"]
+                            if name == "probe: late" and stands[name] != stands["probe: place"]:
+                                found.append("what says that an answer came too late moves the choices")
                             for problem in found:
                                 failed.setdefault(problem, []).append(f"{kitchen} {language} {size[0]}x{size[1]}: {name}")
                             if found and arguments.screenshots:

@@ -17,7 +17,7 @@ PORT = 20341
 PAGE = Path("src/devices/display/page")
 KITCHENS = ("sushi", "burger")
 # Nothing moves while it is measured; what is shown for a moment only stays.
-STILL = "*, *::before, *::after { animation: none !important; transition: none !important; } .why.says { opacity: 1 !important; visibility: visible !important; }"
+STILL = "*, *::before, *::after { animation: none !important; transition: none !important; } .why.says, [data-robot=\"discards\"] .bin.takes { opacity: 1 !important; visibility: visible !important; }"
 
 # What the robot does is said for a second or more: here, each state comes late enough to be shown.
 AT_ONCE = """(() => {
@@ -101,7 +101,7 @@ def tutorial_steps(scene, kitchen):
 def tutorial_texts(scene, kitchen):
     """The steps of the kitchen's own tutorial that stand beside the kitchen: page and signal, with the longest line that it can have below its text."""
     at = {spot["name"]: {"place": {"location": index}} for index, spot in enumerate(scene["locations"])}
-    steps = [step for step in tutorial_steps(scene, kitchen) if step["kind"] in ("text", "press", "order", "signal", "robot", "probe")]
+    steps = [step for step in tutorial_steps(scene, kitchen) if step["kind"] not in ("recipes", "question")]
     pressed = lambda step: step["kind"] in ("press", "order")
     first = next(step["id"] for step in steps if step["kind"] == "press")
     shelves = {shelf["item"].split(" ")[0]: {"place": {"storage": index}} for index, shelf in enumerate(scene["storages"]) if shelf["agent"] == "robot"}
@@ -120,7 +120,7 @@ def tutorial_texts(scene, kitchen):
         return {"highlight": at[step["highlight"]]["place"]["location"]} if "highlight" in step else {"recipe": {"order": order, "dish": step["dish"], "items": dishes[step["dish"]]}}
     return {step["id"]: ({"title": step["title"], "text": step["text"], "frames": frames(step), "hint": hint(step), "presses": presses(step), "missed": pressed(step) or step["kind"] == "probe",
                          "kind": step["kind"], "robot": moves(step), "probe": PROBE if step["kind"] == "probe" else None,
-                         "done": step["kind"] in ("text", "signal", "robot"), "explains_buttons": step["id"] == first}, signal(step)) for step in steps}
+                         "done": step["kind"] in ("text", "signal", "robot", "robot_says"), "explains_buttons": step["id"] == first}, signal(step)) for step in steps}
 
 
 def tutorial_pages(scene, dishes):
@@ -212,6 +212,8 @@ def states(scene, kitchen):
     for order in orders:
         served[order] = "served"
     made["served"] = sight(contents=served)
+    trashed = {"number": 1, "at": {"location": at["robot_hand"]}, "effective": True}
+    made["robot: discards"] = sight(presses=[None, trashed], contents=["empty" if spot["name"] == "robot_hand" else what for spot, what in zip(spots, contents(0))])
     made["empty"] = sight(contents=["empty"] * len(spots), served=0)
     for what in ("waits_human", "waits_order", "waits", "stopped"):
         made[f"robot: {what}"] = sight(robot_does=what)

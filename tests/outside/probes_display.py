@@ -212,7 +212,7 @@ def plays(tomcom, chromium, folder, kitchen, language):
         # The time of a question goes by: the page says so, and the task goes on.
         page.asks(3)
         page.wait_for("document.querySelector('.probing .left.ends')", 20)
-        page.wait_for("Stage.shown().probe.closed && document.querySelector('.probing .late')", 20)
+        page.wait_for("Stage.shown().probe.closed && document.querySelector('.probing .late:not(.none)')", 20)
         returns(page)
         late(number, 3)
 

@@ -111,7 +111,7 @@ impl PageConnection {
     /// Reports to the session that the page that took part is lost.
     async fn report_lost(&mut self) {
         self.hub.status.page(|page| *page = None);
-        let _ = self.hub.inputs.send(PageInput::Lost { since: self.socket.life.heard }).await;
+        let _ = self.hub.inputs.send(PageInput::Lost { since: self.socket.life.alive() }).await;
     }
 
     async fn stop_taking_part(&mut self) {
@@ -146,14 +146,7 @@ impl PageConnection {
                     self.socket.say_ended().await?;
                     return None;
                 }
-                said = self.socket.hear() => {
-                    let said = said?;
-                    // It was silent only for a while.
-                    if std::mem::take(&mut self.is_told_lost) && self.acts() {
-                        self.report_size().await?;
-                    }
-                    self.take(said).await?;
-                }
+                said = self.socket.hear() => self.take(said?).await?,
                 changed = scene.changed() => {
                     changed.ok()?;
                     self.pass_on(&mut scene).await?;
@@ -187,7 +180,15 @@ impl PageConnection {
 
     /// Handles a message of the page; `None` if the connection is to be closed.
     async fn take(&mut self, message: Message) -> Option<()> {
-        match self.socket.read(message)? {
+        let message = self.socket.read(message)?;
+        // It was silent only for a while.
+        if self.is_told_lost && !self.socket.life.is_silent(Instant::now()) {
+            self.is_told_lost = false;
+            if self.acts() {
+                self.report_size().await?;
+            }
+        }
+        match message {
             None => Some(()),
             Some(MessageFromPage::Ping { t, took, hidden }) => {
                 if self.acts() {

@@ -226,11 +226,11 @@ impl PageSocket {
 
 /// Interval of the server's pings to a page.
 const PING: Duration = Duration::from_millis(500);
-/// Silence of a browser (no answer to pings) after which the session is told that the page is lost, and after which it
-/// counts as gone.
+/// Silence of a page after which the session is told that it is lost; a visible page sends two messages per second.
 const LOST: Duration = Duration::from_secs(2);
+/// Silence of a browser (no answer to pings) after which its page counts as gone.
 const SILENCE: Duration = Duration::from_secs(8);
-/// Time without a message after which a visible page counts as hanging; a visible page sends two messages per second.
+/// Time without a message after which a visible page counts as hanging.
 const VISIBLE: Duration = Duration::from_secs(8);
 /// Time without a message after which a hidden page counts as hanging.
 const HIDDEN: Duration = Duration::from_secs(90);
@@ -239,7 +239,7 @@ const HIDDEN: Duration = Duration::from_secs(90);
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PageLife {
     /// Arrival of the last WebSocket frame of any kind, answers to pings included.
-    pub heard: Instant,
+    heard: Instant,
     /// Arrival of the last message that the page itself sent (not the browser).
     spoke: Instant,
     pinged: Instant,
@@ -273,9 +273,15 @@ impl PageLife {
         (self.pinged + PING).min(self.gone_at())
     }
 
-    /// Whether the page counts as lost, since the browser has been silent for too long.
+    /// Last sign of life of the page. A browser answers pings for a page that stands still, or whose connection it has
+    /// given up, so of a visible page only its own messages count; the timers of a hidden page are slow.
+    pub fn alive(&self) -> Instant {
+        if self.is_hidden { self.heard } else { self.spoke }
+    }
+
+    /// Whether the page counts as lost, since it has been silent for too long.
     pub fn is_silent(&self, now: Instant) -> bool {
-        now >= self.heard + LOST
+        now >= self.alive() + LOST
     }
 
     /// Whether the page has been silent for too long.
@@ -325,6 +331,10 @@ mod tests {
         let (start, mut life) = (Instant::now(), PageLife::new(Instant::now()));
         life.heard(start, false);
         assert!(!life.is_silent(start + Duration::from_millis(1900)) && life.is_silent(start + LOST), "told soon");
+        life.heard(start + LOST, false);
+        assert!(life.is_silent(start + LOST), "a visible page that says nothing, whose browser answers");
+        life.hide(true);
+        assert!(!life.is_silent(start + LOST), "a hidden page says something rarely");
         assert_eq!(stays_s(true, true, hours_s), 90, "a hidden page that hangs");
         assert_eq!(stays_s(false, true, 60), 8, "a hidden page whose browser is gone");
     }

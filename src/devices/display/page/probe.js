@@ -95,16 +95,18 @@ const Probe = (() => {
     const all = element("div", "probing"), bar = element("div", "left");
     all.setAttribute("role", "group");
     parts = { all, buttons: [], kit };
-    const late = probe.late ? [text("p", "late", words[probe.practise ? "tutorial late" : "probe late"])] : [];
+    // Its place is there in any case: what is touched stands where it stood before.
+    const late = text("p", probe.late ? "late" : "late none", words[probe.practise ? "tutorial late" : "probe late"]);
+    if (probe.late) late.setAttribute("role", "alert");
     if (probe.closed) {
-      all.append(...late, text("p", "goes-on", words["probe goes on"]), text("p", "seconds", ""));
+      all.append(late, text("p", "goes-on", words["probe goes on"]), text("p", "seconds", ""));
     } else if (!probe.choices.length) {
       all.append(text("h1", "", words.probe), text("p", "says", words["probe text"]));
     } else {
       // Orders stand as they do in the kitchen, not shuffled: their place is what they are known by.
       const orderOf = ({ shows }) => shows?.order ?? scene.locations.length, choices = [...probe.choices].sort((a, b) => orderOf(a) - orderOf(b));
       const head = element("div", "asks"), title = element("div", "title");
-      title.append(...late, text("p", "count", words["probe count"].replace("#", probe.question).replace("#", probe.of)), text("h2", "", probe.text));
+      title.append(late, text("p", "count", words["probe count"].replace("#", probe.question).replace("#", probe.of)), text("h2", "", probe.text));
       head.append(...(probe.about ? [subjectOf(probe.about, kit)] : []), title);
       const isCards = probe.choices.some(({ shows }) => shows && shows.recipe), list = element("div", isCards ? "choices cards" : "choices");
       list.append(...choices.map((choice) => choiceOf(choice, kit)));
@@ -116,7 +118,6 @@ const Probe = (() => {
       arrange(all.querySelector(".choices"), probe.choices, scene);
       fit(all);
     }
-    for (const one of late) one.setAttribute("role", "alert");
     run(bar, all.querySelector(".seconds"), left);
   }
 

@@ -20,60 +20,84 @@ const Reason = (() => {
   const NEEDED = ".pill, .spot .furniture, .dock, .shelf, .spot.order, .key, .recipe.open, .gripper, .tag, .flash, .sheet.open button, .sheet.open p, .sheet.open h1, .sheet.open h2, .probing .left, .lesson:not(.large)";
   // What is better seen, too, but not at any distance.
   const NAMES = ".name, .zone h2, .status span";
-  // Air around the line, and beside what a tutorial marks with a frame, in heights of the line; how far it is moved up or down in one try, and how many tries to each side.
-  const AIR = 0.08, MARK = 0.4, STEP = 0.3, ASIDE = 6;
-  // What hiding a share of the stage costs, and standing over a card's edge; to be the stage's height away costs 1.
-  const HIDES = 1000, HIDES_NAME = 400, OVER = 100;
+  // Lengths in em. Size of words, height of a line and room around the words; air around what is needed, and beside what a tutorial marks with a frame;
+  // how far the line is moved in one try.
+  const WORDS = 1.6, LINE = 1.8, PAD = [2.4, 0.5], AIR = 0.1, MARK = 0.6, STEP = 0.9;
+  // How far away, in em, the line would rather stand than hide a square em of something, or of a name, or stand over a card's edge, or have another line.
+  const HIDES = 60, HIDES_NAME = 0.6, OVER = 5000, BROKEN = 0.1;
+  // So small words can still be read on a screen in the hand, which alone is narrower than a line.
+  const LEAST = 0.72;
 
-  /** The areas of what is seen of these on the stage, in fractions of it, with air around them in heights of the line. */
-  function obstacles(names, stage, [wide, high], line, clear = AIR) {
+  /** The areas of what is seen of these, in em from the stage's corner, with air around them. */
+  function obstacles(names, stage, em, own) {
     const area = (made) => {
-      const box = made.getBoundingClientRect(), air = (made.matches(".hinted") ? MARK : clear) * line, across = (air * high) / wide;
-      const [x, y] = [(box.left - stage.left) / stage.width, (box.top - stage.top) / stage.height];
-      return [x - across, y - air, x + box.width / stage.width + across, y + box.height / stage.height + air];
+      const box = made.getBoundingClientRect(), air = names === NEEDED ? (made.matches(".hinted") ? MARK : AIR) : 0;
+      return [(box.left - stage.left) / em - air, (box.top - stage.top) / em - air, (box.right - stage.left) / em + air, (box.bottom - stage.top) / em + air];
     };
-    return [...document.querySelectorAll(names)].filter((made) => made.checkVisibility({ visibilityProperty: true, opacityProperty: true })).map(area);
+    const isSeen = (made) => made.checkVisibility({ visibilityProperty: true, opacityProperty: true });
+    // The name of what was pressed may be hidden: the line says what it is about.
+    return [...document.querySelectorAll(names)].filter((made) => isSeen(made) && !(own && made.matches(".name") && own.contains(made))).map(area);
   }
 
-  /** The area for a line of this size that is nearest to a point, hides nothing and stands over no card's edge; else the one that hides least. */
-  function nearest([x, y], [wide, line], needed, names, cards) {
-    const hidden = (areas, [left, top]) => areas.reduce((sum, [l, t, r, b]) => sum + Math.max(0, Math.min(r, left + wide) - Math.max(l, left)) * Math.max(0, Math.min(b, top + line) - Math.max(t, top)), 0);
-    const crosses = ([l, t, r, b], [left, top]) => left < r && left + wide > l && top < b && top + line > t && (left < l || left + wide > r || top < t || top + line > b);
+  /** The shapes that words can have, in one line to three: their size, the number of lines, and the size of words, which are smaller rather than broken. */
+  function shapesOf(said, measure, most) {
+    const words = said.split(" ").map((word) => measure(word)), space = measure(" "), natural = measure(said);
+    const linesIn = (wide) => words.reduce(([lines, used], word) => (used + space + word <= wide ? [lines, used + space + word] : [lines + 1, word]), [0, Infinity])[0];
+    const shape = (lines) => {
+      let wide = Math.max(...words);
+      while (linesIn(wide) > lines && wide < natural) wide += 0.3;
+      const small = Math.min(1, (most - PAD[0]) / wide);
+      return { lines, small, size: [small * wide + PAD[0], lines * LINE + PAD[1]] };
+    };
+    const all = [1, 2, 3].slice(0, words.length).map(shape), readable = all.filter(({ small }) => small >= LEAST);
+    return readable.length ? readable : all.slice(-1);
+  }
+
+  /** The area for one of these shapes that is nearest to what was pressed, hides nothing and stands over no card's edge; else the one that costs least. */
+  function nearest([l, t, r, b], shapes, [width, height], needed, names, cards) {
+    const hidden = (areas, x, y, w, h) => areas.reduce((sum, [al, at, ar, ab]) => sum + Math.max(0, Math.min(ar, x + w) - Math.max(al, x)) * Math.max(0, Math.min(ab, y + h) - Math.max(at, y)), 0);
+    const crosses = ([al, at, ar, ab], x, y, w, h) => al < x + w && x < ar && at < y + h && y < ab && (x < al || x + w > ar || y < at || y + h > ab);
     let best = null, least = Infinity;
-    const far = Math.ceil(1 / (STEP * line));
-    for (let down = -far; down <= far; down += 1) for (let across = -ASIDE; across <= ASIDE; across += 1) {
-      const top = y - line / 2 + down * STEP * line, left = Math.min(0.994 - wide, Math.max(0.006, x - wide / 2 + (across * wide) / (2 * ASIDE)));
-      if (top < 0.006 || top + line > 0.994) continue;
-      // Hiding something is worse than any distance.
-      const covers = hidden(needed, [left, top]), isOver = cards.some((card) => crosses(card, [left, top]));
-      const cost = (isOver ? OVER : 0) + (covers ? 10 + HIDES * covers : 0) + HIDES_NAME * hidden(names, [left, top]) + Math.abs(top + line / 2 - y) + 0.5 * Math.abs(left + wide / 2 - x);
-      if (cost < least) [best, least] = [[left, top, wide, line], cost];
+    for (const { lines, small, size: [w, h] } of shapes) {
+      const [lowX, highX, lowY, highY] = [0.6, width - 0.6 - w, 0.4, height - 0.4 - h];
+      // From where it stands close beside, above or below, to all sides.
+      const across = [(l + r - w) / 2, l, r - w, l - w - AIR, r + AIR], down = [(t + b - h) / 2, t, b - h, t - h - AIR, b + AIR];
+      for (let x = lowX; x <= highX; x += STEP) across.push(x);
+      for (let y = lowY; y <= highY; y += STEP) down.push(y);
+      for (const y of down.filter((one) => one >= lowY && one <= highY)) for (const x of across.map((one) => Math.min(highX, Math.max(lowX, one)))) {
+        const away = Math.hypot(Math.max(0, l - x - w, x - r), Math.max(0, t - y - h, y - b));
+        // Of two that are as near, the one whose middle is nearer.
+        const far = away + 0.05 * Math.hypot(x + w / 2 - (l + r) / 2, y + h / 2 - (t + b) / 2) + BROKEN * (lines - 1);
+        if (far >= least) continue;
+        const cost = far + HIDES * hidden(needed, x, y, w, h) + HIDES_NAME * hidden(names, x, y, w, h) + (cards.some((card) => crosses(card, x, y, w, h)) ? OVER : 0);
+        if (cost < least) [best, least] = [{ area: [x, y, w, h], small }, cost];
+      }
     }
     return best;
   }
 
-  /** Shows a line near a point of the stage. */
-  function place(said, at, root, { room, text, put, replay }) {
+  /** Shows a line near something of the stage, whose edges `at` gives in em. */
+  function place(said, at, own, root, { room, text, put, replay }) {
     made.replaceChildren(text("span", "", said));
     if (!said) return hide();
-    // Its words are smaller where the stage is narrower than the line.
-    const [em, line] = [room.em[0], 2.8 * room.em[1]], natural = room.widthOf(said, 1.6 * em) + 3 * em, wide = Math.min(0.988, natural);
-    made.style.setProperty("--words", (wide - 3 * em) / (natural - 3 * em));
-    const stage = root.getBoundingClientRect();
-    put(made, nearest(at(stage), [wide, line], ...[[NEEDED], [NAMES], [".sheet.open .card", 0]].map(([names, air]) => obstacles(names, stage, [stage.width, stage.height], line, air))));
+    const stage = root.getBoundingClientRect(), em = room.em[0] * stage.width, size = [stage.width / em, stage.height / em], most = size[0] - 1.2;
+    const measure = (words) => room.widthOf(words, WORDS * room.em[0]) / room.em[0], shapes = shapesOf(said, measure, most);
+    const { area: [x, y, w, h], small } = nearest(at(stage, em), shapes, size, ...[NEEDED, NAMES, ".sheet.open .card"].map((names) => obstacles(names, stage, em, own)));
+    made.style.setProperty("--words", small);
+    put(made, [x / size[0], y / size[1], w / size[0], h / size[1]]);
     return replay(made, "says");
   }
 
   /** Shows the line at what was pressed, as near as it can stand without hiding what is needed next. */
   function draw(said, pressed, root, kit) {
-    place(said, (stage) => {
-      const { left, top, width, height } = pressed.getBoundingClientRect();
-      return [(left + width / 2 - stage.left) / stage.width, (top + height / 2 - stage.top) / stage.height];
-    }, root, kit);
+    place(said, (stage, em) => {
+      const { left, top, right, bottom } = pressed.getBoundingClientRect();
+      return [(left - stage.left) / em, (top - stage.top) / em, (right - stage.left) / em, (bottom - stage.top) / em];
+    }, pressed, root, kit);
   }
 
   /** Says something that is about no place, in the middle below. */
-  const say = (said, root, kit) => place(said, () => [0.5, 0.965], root, kit);
+  const say = (said, root, kit) => place(said, ({ width, height }, em) => [(0.5 * width) / em, (0.965 * height) / em, (0.5 * width) / em, (0.965 * height) / em], null, root, kit);
 
   const hide = () => made.classList.remove("says");
 

@@ -71,6 +71,14 @@ const Room = (scene, fontFamily) => {
     return grown(around(areas("place")), [left, 0.085, right, 0.03]);
   }
 
+  /** Where it says that one can go on without the robot: below what is the robot's. */
+  function forGoOn() {
+    const [x, y, w, h] = sides()[0], theirs = [...areas("robot_hand"), ...scene.storages.filter(({ agent }) => agent === "robot").map(({ area }) => area)];
+    const top = Math.max(...theirs.map(([, low, , high]) => low + high)), tags = scene.tags.map(({ area }) => area).filter((area) => overlaps(area, [x, top, w, y + h - top]));
+    const left = Math.max(x, ...tags.map(([from, , wide]) => from + wide)) + 0.006;
+    return [left, top, x + w - 0.008 - left, y + h - 0.004 - top];
+  }
+
   /** Where the robot's arm comes from: the edge of its side that is nearest to the viewer. */
   function base() {
     const [x, y, w, h] = sides()[0];
@@ -160,24 +168,27 @@ const Room = (scene, fontFamily) => {
     return [left, order ? y : y + (h - high) / 2, wide, high];
   }
 
-  /** Where a page of the tutorial stands, always as large: over the robot's side, or over another one if it is about that. */
-  function forLesson(recipe, page) {
+  /** Where a page of the tutorial stands, always as large: where it hides nothing that it is about; if something is pressed over the robot's side, else rather over the person's. */
+  function forLesson(shows, page) {
     const [robots, humans] = sides(), middle = table(), y = robots[1] + 0.05, w = robots[2], tags = scene.tags.map(({ area }) => area).filter((area) => area[1] > y);
-    const end = Math.min(robots[1] + robots[3], ...tags.map((area) => area[1] - 0.012)), lefts = [robots[0], humans[0] + humans[2] - w, middle[0] + (middle[2] - w) / 2];
-    return Room.leastHidden(lefts.map((x) => [x, y, w, end - y]), Room.isAbout(scene, { robot: robots, human: humans, table: middle }, recipe, page));
+    const end = Math.min(robots[1] + robots[3], ...tags.map((area) => area[1] - 0.012)), mine = humans[0] + humans[2] - w, between = middle[0] + (middle[2] - w) / 2;
+    const lefts = page.presses ? [robots[0], mine, between] : [mine, between, robots[0]];
+    return Room.leastHidden(lefts.map((x) => [x, y, w, end - y]), Room.isAbout(scene, { robot: robots, human: humans, table: middle }, shows, page));
   }
 
   return {
     isUpright: false, placed: scene, em: [0.01, 0.01 * ratio],
-    widthOf, nameSize: (spot) => 100 * nameSize(spot), sides, table, base, taken, forPill, forStatus, forRecipe,
+    widthOf, nameSize: (spot) => 100 * nameSize(spot), sides, table, base, taken, forPill, forStatus, forGoOn, forRecipe,
     forLesson,
   };
 };
 
-/** The areas that a page of the tutorial is about: what it frames, its recipe, and what the robot does, which is watched. A button of the person is in none of them. */
-Room.isAbout = (scene, zones, recipe, { kind, frames }) => {
+/** The areas that a page of the tutorial is about: what it frames and its signal shows, what the robot does, which is watched, and what is asked about; else
+ * both sides. A button of the person is in none of them. */
+Room.isAbout = (scene, zones, shows, { kind, frames, presses }) => {
   const areaOf = ({ area, place }) => zones[area] || (place && ("storage" in place ? scene.storages[place.storage] : scene.locations[place.location]).area);
-  return [...frames.map(areaOf), recipe, kind === "robot" && zones.robot].filter(Boolean);
+  const all = [...frames.map(areaOf), shows, kind === "robot" && zones.robot, kind === "probe" && zones.table].filter(Boolean);
+  return all.length || presses ? all : [zones.robot, zones.human];
 };
 
 /** The first of these areas that hides least of others. */

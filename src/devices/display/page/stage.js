@@ -6,8 +6,8 @@ const Stage = (() => {
   const root = document.getElementById("stage");
   // Higher than wide by so much, the screen shows the layout of upright screens, which is between so wide and so wide for its height.
   const UPRIGHT = 1.2, NARROW = 0.42, WIDE = 1 / UPRIGHT;
-  // For so long at least it is said what the robot does.
-  const SAYS_MS = 1000, says = { does: null, until: 0, timer: 0 };
+  // For so long at least it is said what the robot does, and what it has just done.
+  const SAYS_MS = 1000, TOLD_MS = 2500, says = { does: null, news: "", until: 0, timer: 0 };
   let pad = null, told = null, scene = null, room = null, shown = null, parts = null, words = {}, timeLeft = () => 0;
   let marks = { lost: false, ended: false, acts: true, free: false };
 
@@ -89,7 +89,7 @@ const Stage = (() => {
       // A highlighted place is framed together with its name.
       const name = text("div", "name", spot.label), size = room.nameSize(spot);
       const over = Math.max(0, room.widthOf(spot.label, size) - w / room.em[0]) / 2;
-      made.style.setProperty("--side", `${(over + 1.2).toFixed(2)}em`);
+      made.style.setProperty("--side", `${(over + (room.isUpright ? 0.9 : 1.2)).toFixed(2)}em`);
       name.style.fontSize = `${size.toFixed(3)}em`;
       // The robot's hand itself lies there, if it is drawn.
       const isDock = spot.kind === "robot_hand" && scene.arm !== "none";
@@ -176,8 +176,7 @@ const Stage = (() => {
     Sound.build(scene);
     const kitchen = element("div", "kitchen");
     const [theirs, mine] = room.sides(), robots = buildZone("robot", theirs, scene.words.robot);
-    robots.append(text("p", "", ""));
-    Object.assign(says, { does: null, until: 0 });
+    Object.assign(says, { does: null, news: "", until: 0 });
     kitchen.append(robots, buildZone("human", mine, scene.words.human));
     kitchen.append(put(element("section", "zone table"), room.table()));
     const locations = scene.locations.map(buildLocation), storages = scene.storages.map(buildStorage);
@@ -187,9 +186,9 @@ const Stage = (() => {
     // A recipe opens near its order, beside the robot's side if that is drawn; the instruction opens in the largest free area.
     const free = room.forRecipe(all, undefined, { isClear: scene.arm !== "none" });
     const cards = scene.locations.map(({ kind, area }) => (kind === "order" ? room.forRecipe(all, area, { isClear: scene.arm !== "none" }) : free));
-    const recipe = put(element("div", "recipe"), free);
+    const recipe = put(element("div", "recipe"), free), goOn = put(element("div", "go-on"), room.forGoOn());
     const robot = Robot.build(told, room, { taken: all, cards }, element);
-    kitchen.append(...robot, ...locations.map((l) => l.made), ...storages.map((s) => s.made), ...pills, recipe);
+    kitchen.append(...robot, ...locations.map((l) => l.made), ...storages.map((s) => s.made), ...pills, goOn, recipe);
     const sheet = element("div", "sheet"), toast = element("div", "toast"), status = put(Status.build(element), tally), target = element("div", "target", "<i></i>");
     root.append(kitchen, status, sheet, Reason.build(element), toast, target, ...scene.tags.map((tag) => put(element("div", "tag", Art.tag(tag.rows)), tag.area)));
     const flash = element("div", "flash");
@@ -197,7 +196,7 @@ const Stage = (() => {
       const tag = scene.tags[2] ? scene.tags[2].area : [0.99, 0.98, 0, 0];
       root.append(put(flash, [tag[0] - 0.033, 1 - 0.0267 * Number(scene.display_m[0] / scene.display_m[1]) * 0.9375 - 0.004, 0.025, 0.025 * (scene.display_m[0] / scene.display_m[1])]));
     }
-    parts = { kitchen, robots, locations, storages, recipe, sheet, toast, flash, target, free, cards };
+    parts = { kitchen, robots, goOn, locations, storages, recipe, sheet, toast, flash, target, free, cards };
     mark({});
   }
 
@@ -238,14 +237,22 @@ const Stage = (() => {
     return "storage" in spot ? parts.storages[spot.storage] : parts.locations[spot.location];
   }
 
-  function drawPresses({ presses, tutorial }) {
+  /** Shows what the robot throws away; what it held is known from before the press. */
+  function drawDiscard({ at, effective }, contents) {
+    const spot = scene.locations[at.location], held = shown.contents[at.location];
+    if (!effective || !spot || spot.kind !== "robot_hand" || contents[at.location] !== "empty" || !held || held === "empty") return;
+    says.news = "discards";
+    Robot.discard(held, contentOf, replay);
+  }
+
+  function drawPresses({ presses, tutorial, contents }) {
     ["human", "robot"].forEach((agent, index) => {
       const now = presses[index], before = shown && shown.presses[index];
       if (!now || !shown || (before && before.number === now.number)) return;
       const { made } = partOf(now.at);
       made.querySelector(".ring").className = `ring ${agent} ${now.effective ? "works" : "fails"}`;
       replay(made.querySelector(".ring"), "pulse");
-      if (agent === "robot") return;
+      if (agent === "robot") return drawDiscard(now, contents);
       if (!now.effective) {
         replay(made, "shakes");
         Sound.play("effectless");
@@ -319,20 +326,25 @@ const Stage = (() => {
     if (spot) partOf(spot).made.classList.add("intended");
   }
 
-  /** The robot's side says what the robot does if it does not simply work, each for a second or more; a stop is seen at once and at a glance. */
+  /** The robot's side says this of the robot; a stop is seen at a glance. */
+  function sayOfRobot(does) {
+    root.dataset.robot = does;
+    parts.robots.querySelector("h2").textContent = scene.words[does ? `robot ${does.replace("_", " ")}` : "robot"];
+    parts.goOn.replaceChildren(text("p", "", does === "stopped" ? scene.words["robot go on"] : ""));
+    [parts.robots, parts.goOn].forEach(fitWords);
+  }
+
+  /** Says what the robot has just done, else what it does if it does not simply work; each for a while, but a stop at once. */
   function drawRobot() {
     clearTimeout(says.timer);
-    const does = (shown && shown.robot_does) || "", now = performance.now();
-    if (says.does === does) return;
-    if (says.until > now && does !== "stopped") {
-      says.timer = setTimeout(drawRobot, says.until - now);
-      return;
+    const state = (shown && shown.robot_does) || "", now = performance.now();
+    if (state === "stopped" || (says.does === says.news && says.until <= now)) says.news = "";
+    const does = says.news || state;
+    if (says.does !== does && (says.until <= now || says.news || state === "stopped")) {
+      Object.assign(says, { does, until: now + (says.news ? TOLD_MS : SAYS_MS) });
+      sayOfRobot(does);
     }
-    Object.assign(says, { does, until: now + SAYS_MS });
-    root.dataset.robot = does;
-    parts.robots.querySelector("h2").textContent = does ? scene.words[`robot ${does.replace("_", " ")}`] : scene.words.robot;
-    parts.robots.querySelector("p").textContent = does === "stopped" ? scene.words["robot go on"] : "";
-    fitWords(parts.robots);
+    if (says.until > now) says.timer = setTimeout(drawRobot, says.until - now);
   }
 
   /** What the buttons show of themselves: their keys, their gamepad's buttons, the colours of their caps, or nothing. */
@@ -353,8 +365,9 @@ const Stage = (() => {
     parts.sheet.className = `sheet ${stage === "running" ? "" : "open"} ${BIG.includes(stage) ? "big" : ""} ${stage}`;
     if (stage === "questionnaire" && sight.question) return Questions.draw(parts.sheet, sight.question, scene.words, { element, text });
     if (sight.tutorial) {
-      const recipe = sight.signal && sight.signal.recipe, area = room.forLesson(recipe && parts.cards[recipe.order], sight.tutorial);
-      return Tutorial.draw(parts.sheet, sight.tutorial, { scene, area, badges: badges(), element, text, put, partOf, fitWords, contentOf, draws: drawContents, contents: sight.contents });
+      const { recipe, highlight } = sight.signal || {}, shows = recipe ? parts.cards[recipe.order] : scene.locations[highlight]?.area;
+      const area = room.forLesson(shows, sight.tutorial);
+      return Tutorial.draw(parts.sheet, sight.tutorial, { scene, area, badges: badges(), element, text, put, partOf, fitWords, contentOf, sayOfRobot, draws: drawContents, contents: sight.contents });
     }
     Tutorial.end();
     if (sight.probe) return Probe.draw(parts.sheet, sight.probe, left, { scene, element, text, contentOf });
@@ -413,6 +426,7 @@ const Stage = (() => {
     if (!shown || JSON.stringify(onSheet(shown)) !== JSON.stringify(onSheet(sight))) drawSheet(sight, left);
     drawTarget(sight);
     Status.draw(sight, left, scene.words);
+    if (shown && shown.robot_does === "stopped" && sight.robot_does !== "stopped" && sight.stage === "running") says.news = "goes_on";
     shown = sight;
     drawRobot();
   }

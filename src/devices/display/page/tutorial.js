@@ -6,7 +6,9 @@ const Tutorial = (() => {
   const PRACTISED = ["tutorial right", "tutorial probe wrong"];
   // A press of the robot: the way there, the press, and the rest after it; the hand is down at the end of its way.
   const WAY_MS = 1600, REST_MS = 700, DOWN_FROM = 0.8, FRAME_MS = 33;
-  let mover = 0, rested = null;
+  // What the robot's side can say, and how long each is shown.
+  const SAYINGS = ["waits_human", "waits_order", "waits", "stopped"], SAYING_MS = 2500;
+  let mover = 0, sayer = 0, rested = null;
   // Whether the question of a probe is practised now.
   let tries = false;
   let timer = 0, ticker = 0, hinter = 0, shownStep = "", endsAt = 0, told = () => {}, marked = [], drawn = null;
@@ -74,15 +76,24 @@ const Tutorial = (() => {
   /** Ends what the robot shows, with the hand where it was before. */
   function rest() {
     clearInterval(mover);
+    clearInterval(sayer);
+    if (sayer) drawn.kit.sayOfRobot("");
+    sayer = 0;
     document.getElementById("stage").classList.remove("moves");
     if (rested) Robot.move(rested);
     rested = null;
   }
 
-  /** Lets the robot's hand press one button after another, from the beginning again when all are pressed. */
-  function demonstrate({ robot }, kit) {
+  /** Lets the robot's hand press one button after another, from the beginning again when all are pressed; or its side say one thing after another. */
+  function demonstrate({ kind, robot }, kit) {
     const before = rested || Robot.pose();
     rest();
+    if (kind === "robot_says") {
+      let said = 0;
+      const say = () => kit.sayOfRobot(SAYINGS[said++ % SAYINGS.length]);
+      say();
+      sayer = setInterval(say, SAYING_MS);
+    }
     if (!robot.length || !before) return;
     rested = before;
     document.getElementById("stage").classList.add("moves");

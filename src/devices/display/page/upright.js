@@ -7,10 +7,11 @@ const Upright = (wall, fontFamily, ratio) => {
   const WIDE = Upright.wideOf(ratio), BETWEEN = 0.8, EDGE = 0.8;
   // Height of a name above its place; sizes of names and words; least and most height of what is touched; least height for recipes and texts.
   const NAME = 1.9, WORDS = 1.45, TOUCH = [6.2, 12], TEXTS = 11.4;
-  // Size of what the robot has, as a share of what is touched, where its row is wide enough; room below what is touched, height of the title of the robot's side.
-  const THEIRS = 0.7, INNER = 0.7, TITLE = 2.2;
-  // Width of a place, as a share of its height, of which a button leaves so much less; and its least width.
-  const FLAT = 1.4, BUTTON = 8.6, PLACE = 9.6;
+  // Size of what the robot has, as a share of what is touched, where its row is wide enough; room below what is touched, height of the title of the robot's side;
+  // room below what the robot has, where its hand stands, if that is drawn, as such a share, too.
+  const THEIRS = 0.7, INNER = 0.7, TITLE = 2.2, LANE = wall.arm === "none" ? 0 : 0.85;
+  // Width of a place, as a share of its height, of which a button leaves so much less; its least width; room beside it towards the middle, where the robot's hand stands.
+  const FLAT = 1.4, BUTTON = 8.6, PLACE = 9.6, ASIDE = 3.3;
   // Where keys are not shown, the buttons of several orders are told apart by their numbers.
   const served = wall.locations.flatMap(({ kind }, index) => (kind === "order" ? [index] : []));
   const numbered = (knob) => (knob.does === "serve" && served.length > 1 ? { ...knob, label: `${knob.label} ${served.indexOf(knob.at) + 1}` } : knob);
@@ -24,7 +25,7 @@ const Upright = (wall, fontFamily, ratio) => {
   const rows = { places: chunks(places, 2), mine: chunks(shelves("human"), 5), theirs: chunks([...of("robot_hand").map((at) => ({ location: at })), ...shelves("robot").map((at) => ({ storage: at }))], 7) };
   // What is left of the height goes to what is touched and what the robot has, then to recipes and texts.
   const touched = 2 + rows.places.length + rows.mine.length, named = touched - 1;
-  const fixed = 2 * EDGE + 3 * BETWEEN + named * (NAME + INNER) + 3 * INNER + TITLE + rows.theirs.length * (NAME + INNER) + TEXTS, shares = touched + THEIRS * rows.theirs.length;
+  const fixed = 2 * EDGE + 3 * BETWEEN + named * (NAME + INNER) + 3 * INNER + TITLE + rows.theirs.length * (NAME + INNER) + TEXTS, shares = touched + (THEIRS + LANE) * rows.theirs.length;
   const touch = Math.min(TOUCH[1], Math.max(TOUCH[0], (high - fixed) / shares)), small = Math.min(THEIRS * touch, (WIDE - 2 * EDGE) / Math.max(...rows.theirs.map((row) => row.length)) - 1.6);
   const texts = TEXTS + Math.max(0, high - fixed - shares * touch), flat = FLAT * touch;
 
@@ -60,22 +61,22 @@ const Upright = (wall, fontFamily, ratio) => {
         areas.limits.set(area, wide - air[at]);
         x += wide;
       });
-      y += NAME + small + INNER;
+      y += NAME + small + LANE * touch + INNER;
     }
     return y;
   }
 
-  /** Places in two columns, as on the wall: the buttons of a place stand beside it. */
+  /** Places in two columns, as on the wall: the buttons of a place stand beside it, away from the middle. */
   function putPlaces(top) {
     let y = top + INNER / 2;
     const column = (WIDE - 2 * EDGE) / 2;
     for (const row of rows.places) {
       row.forEach((index, at) => {
-        const left = EDGE + at * column, knobs = knobsAt(index), wide = Math.max(PLACE, Math.min(flat, column - 5 - BUTTON * knobs.length)), x = left + (knobs.length ? 2.4 : (column - wide) / 2);
+        const left = EDGE + at * column, knobs = knobsAt(index), wide = Math.max(PLACE, Math.min(flat, column - 5 - BUTTON * knobs.length)), aside = knobs.length ? ASIDE : (column - wide) / 2;
+        const x = at ? left + aside : left + column - aside - wide;
         areas.locations[index] = rect(x, y + NAME, wide, touch);
-        areas.limits.set(areas.locations[index], knobs.length ? wide + 4 : column - 1);
-        const free = [x + wide + 1.9, left + column - 0.7 - x - wide - 1.9];
-        spread(knobs.length, free[0], free[1], 0.5).forEach(([from, width], one) => areas.knobs.set(knobs[one].name, rect(from, y + NAME, width, touch)));
+        areas.limits.set(areas.locations[index], knobs.length ? wide + 2.8 : column - 1);
+        spread(knobs.length, at ? x + wide + 1.9 : left + 0.7, column - 0.7 - aside - wide - 1.9, 0.5).forEach(([from, width], one) => areas.knobs.set(knobs[one].name, rect(from, y + NAME, width, touch)));
       });
       y += NAME + touch + INNER;
     }
@@ -127,17 +128,17 @@ const Upright = (wall, fontFamily, ratio) => {
     return { area, words: Math.min(1, (area[2] * WIDE - 1.2) / Math.max(...label.split(" ").map((word) => measure(word, 1.6)))) };
   }
 
-  /** Where a text of the tutorial stands: below the orders and over the robot's side, else over the places, or over the person's side where nothing is pressed. */
-  function forLesson(recipe, page) {
+  /** Where a text of the tutorial stands: below the orders and over the robot's side; where nothing is pressed, rather over the person's side or over the places. */
+  function forLesson(shows, page) {
     const above = [free[0], free[1], free[2], zones.theirs[1] + zones.theirs[3] - free[1]];
-    return Room.leastHidden([above, zones.places, ...(page.presses ? [] : [zones.mine])], Room.isAbout(placed, { robot: zones.theirs, human: zones.mine, table: zones.places }, recipe, page));
+    return Room.leastHidden(page.presses ? [above, zones.places] : [zones.mine, zones.places, above], Room.isAbout(placed, { robot: zones.theirs, human: zones.mine, table: zones.places }, shows, page));
   }
 
   return {
     isUpright: true, placed, em: [1 / WIDE, 1 / high], nameSize, forPill, forLesson,
     widthOf: (said, size) => measure(said, size),
-    sides: () => [zones.theirs, zones.mine], table: () => zones.places, base: () => [zones.theirs[0], zones.theirs[1] + zones.theirs[3] / 2], taken: () => [rect(EDGE, top.mine, measure(scene.words.human, WORDS) + 1.6, TITLE)],
-    forStatus: () => rect(WIDE - EDGE - 18, top.mine + 0.3, 17, NAME), forRecipe: () => free,
+    sides: () => [zones.theirs, zones.mine], table: () => zones.places, base: () => [0.5, zones.theirs[1] + zones.theirs[3]], taken: () => [rect(EDGE, top.mine, measure(scene.words.human, WORDS) + 1.6, TITLE)],
+    forGoOn: () => rect(WIDE / 2 - 2, top.theirs + 0.1, WIDE / 2 + 0.8 - EDGE, TITLE + 0.2), forStatus: () => rect(WIDE - EDGE - 18, top.mine + 0.3, 17, NAME), forRecipe: () => free,
   };
 };
 

@@ -418,8 +418,9 @@ pub fn landmarks(recording: &Path, kinds: &[ReplayLandmark]) -> FileResult<Vec<R
         for ((number, (nth, press)), error) in (1..).zip(errors).zip(explained) {
             let coded = codes.iter().filter_map(|(rater, codes)| Some((rater, codes.0.get(&press.seq)?)));
             let coded: String = coded.map(|(rater, code)| format!("; {rater}: {}", wording::code(code))).collect();
+            let next = follower.judged_until(nth);
             let ExplainedError { press: name, with_cause, .. } = error;
-            add(press.time, follower.judged_until(nth), format!("error {number}: {name}: {with_cause}{coded}"));
+            add(press.time, next, format!("error {number}: {name}: {with_cause}{coded}"));
         }
     }
     if kinds.contains(&ReplayLandmark::Signal) {

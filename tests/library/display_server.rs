@@ -52,6 +52,11 @@ impl RawPage {
         self.say(&json!({"kind": "hello", "page": page, "width": 800, "height": 600, "code": code}));
     }
 
+    /// What a browser answers by itself to a ping, with a mask of zeros.
+    fn pong(&mut self) {
+        self.0.write_all(&[0x8a, 0x80, 0, 0, 0, 0]).expect("sent");
+    }
+
     /// Says hello; whether it acts, none: it is not let in.
     pub fn joins(&mut self, page: &str) -> Option<bool> {
         self.hello(page, None);

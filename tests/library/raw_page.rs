@@ -16,7 +16,7 @@ pub fn connect(address: SocketAddr) -> TcpStream {
 }
 
 /// A page, as far as the server can see.
-pub struct RawPage(TcpStream);
+pub struct RawPage(pub TcpStream);
 
 impl RawPage {
     pub fn open(stream: TcpStream, host: SocketAddr) -> RawPage {
@@ -46,11 +46,6 @@ impl RawPage {
         frame.extend(text.as_bytes());
         // Who was thrown out already is told so by what it hears.
         let _ = self.0.write_all(&frame);
-    }
-
-    /// What a browser answers by itself to a ping, with a mask of zeros.
-    pub fn pong(&mut self) {
-        let _ = self.0.write_all(&[0x8a, 0x80, 0, 0, 0, 0]);
     }
 
     /// The next message of this kind; none, if the connection ends before.

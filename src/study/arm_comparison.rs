@@ -81,9 +81,10 @@ pub struct StudyArmContrast {
     pub contrast: MixedModelContrast,
 }
 
-/// Mean number of events in a trial below which the primary model is not relied on: models that take counts as normal are
-/// biased there (Bolker et al. 2009, Trends in Ecology and Evolution 24, 127-135: fewer than five counts in a treatment),
-/// and so are those of logarithms of counts (O'Hara and Kotze 2010, Methods in Ecology and Evolution 1, 118-122).
+/// Mean number of events in a trial below which the primary model is not relied on. Bolker et al. 2009 (Trends in Ecology and
+/// Evolution 24, 127-135) give the bound for penalised quasi-likelihood, which also takes counts as about normal: it is biased
+/// where fewer than five are expected in a treatment. Logarithms of counts are biased there, too (O'Hara and Kotze 2010, Methods
+/// in Ecology and Evolution 1, 118-122).
 pub const FEW_EVENTS: f64 = 5.0;
 
 /// What speaks against the ratio of the primary model.

@@ -328,8 +328,8 @@ mod tests {
         assert_eq!(stays_s(true, true, 60), hours_s, "a hidden page, whose timers are slowed down");
         assert_eq!(stays_s(false, false, hours_s), 8, "a browser that is gone");
         assert_eq!(stays_s(true, false, hours_s), 8, "a visible page that hangs");
-        let (start, mut life) = (Instant::now(), PageLife::new(Instant::now()));
-        life.heard(start, false);
+        let start = Instant::now();
+        let mut life = PageLife::new(start);
         assert!(!life.is_silent(start + Duration::from_millis(1900)) && life.is_silent(start + LOST), "told soon");
         life.heard(start + LOST, false);
         assert!(life.is_silent(start + LOST), "a visible page that says nothing, whose browser answers");

@@ -127,7 +127,6 @@ fn stopped(brush: &mut Painter, line: Rect, session: &Session, model: &ConsoleMo
             format!(" ARM: {} ", event_words::arm_stage(stage, "").to_uppercase())
         }
         (_, Some(force_n)) => format!(" contact, {force_n:.0} N "),
-        _ if line.height == 1 && session.robot.is_stopped_by_wizard() => " STOPPED BY WIZARD ".to_string(),
         _ => format!(" {} ", session.robot.safety_mode().name()),
     };
     let key = model.keys.chord_for(&KeyAction::ResumeRobot).filter(|_| session.phase != TrialPhase::Closed);

@@ -37,6 +37,6 @@ fn hint(word: &str) -> String {
         (false, false) if path.exists() || path.extension().is_some_and(|ending| ending == "toml") => {
             format!("a session file is run by 'tomcom operate {word}'")
         }
-        (false, false) => "a session file is run by 'tomcom operate SESSION'".to_string(),
+        (false, false) => "'tomcom --help' lists the commands".to_string(),
     }
 }

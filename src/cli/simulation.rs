@@ -49,7 +49,7 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     }
     check_condition(args, files.spec.plan.is_some())?;
     tell_unused(args, &files.spec);
-    tell_absent_wizard(args, &files.spec);
+    tell_differences(args, &files.spec);
     // If there is a plan, the plan defines the conditions.
     files.spec.trial.condition = args.condition.map_or(Condition::None, Condition::from);
     if files.spec.unattended(files.spec.trial.condition) != files.spec.trial.condition {
@@ -95,9 +95,17 @@ fn tell_unused(args: &SimulateArgs, spec: &SessionSpec) {
     }
 }
 
-/// Reports conditions of a plan in which a person would send signals, since a simulation has no such person.
-fn tell_absent_wizard(args: &SimulateArgs, spec: &SessionSpec) {
-    let Some(plan) = spec.plan.as_ref().filter(|_| spec.wizard.kind == WizardKind::Person) else { return };
+/// Reports in what the simulated trials of a plan differ from those of people: the gaze, and conditions in which a person
+/// would send signals.
+fn tell_differences(args: &SimulateArgs, spec: &SessionSpec) {
+    let Some(plan) = &spec.plan else { return };
+    if spec.participant.gaze == GazeSource::None && spec.participant.kind != ParticipantKind::Simulated {
+        let session = args.session.display();
+        put_aside(&format!("{session}: simulated participants have gaze, which the plan has not (gaze = \"none\")\n"));
+    }
+    if spec.wizard.kind != WizardKind::Person {
+        return;
+    }
     let is_wizards = |arm: &&StudyArm| arm.condition() == Condition::Wizard;
     let silent: Vec<String> =
         plan.conditions.iter().filter(is_wizards).map(|arm| format!("\"{}\"", arm.name())).collect();

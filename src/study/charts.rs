@@ -298,7 +298,7 @@ const APART: f64 = 0.05;
 pub fn power(found: &PowerSummary) -> String {
     let sizes: Vec<f64> = found.sizes.iter().map(|size| size.participants as f64).collect();
     let (first, last) = (sizes.first().copied().unwrap_or(0.0), sizes.last().copied().unwrap_or(1.0));
-    let mut names: Vec<(f64, String)> = Vec::new();
+    let mut names: Vec<(f64, (&str, String))> = Vec::new();
     let has_anova = found.needed.iter().any(|needed| needed.test.method == SignificanceTestMethod::MixedAnova);
     let (title, label, line, most) = match found.is_null() {
         true => ("Type I error by number of participants", "studies that find an effect", ALPHA, 0.2),
@@ -328,17 +328,21 @@ pub fn power(found: &PowerSummary) -> String {
             (_, true) => "mixed model".to_string(),
             (_, false) => format!("{} to {}", test.arm.name(), test.against.name()),
         };
-        names.extend(points.last().map(|(_, share)| (*share, name)));
+        names.extend(points.last().map(|(_, share)| (*share, (class, name))));
     }
-    for (y, name) in apart(names, APART * most, most) {
-        chart.words("strong", last, y, true, &name);
+    for (y, (class, name)) in apart(names, APART * most, most) {
+        chart.line(class, &[(1.03 * last, y), (1.09 * last, y)]);
+        chart.words("strong", 1.09 * last, y, true, &name);
     }
-    chart.words("strong", 0.0, most, true, title);
+    // Where no curve is: power rises to the right, and errors of type I are few.
+    let (x, y) = if found.is_null() { (0.0, 0.95 * most) } else { (0.4 * last, 0.12 * most) };
+    chart.words("strong", x, y, true, title);
+    chart.words("", x, y - 0.07 * most, true, "bands: 95 % intervals of the simulation");
     document(&chart.finish(title), STYLE)
 }
 
 /// Heights of the names at the ends of lines, moved at least `gap` apart and at most `most` high.
-fn apart(mut names: Vec<(f64, String)>, gap: f64, most: f64) -> Vec<(f64, String)> {
+fn apart<Name>(mut names: Vec<(f64, Name)>, gap: f64, most: f64) -> Vec<(f64, Name)> {
     names.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut highest = most;
     for (y, _) in &mut names {

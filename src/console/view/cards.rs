@@ -77,11 +77,10 @@ fn who_plays(session: &Session) -> String {
 
 fn before(session: &Session, model: &ConsoleModel) -> Card {
     let trial = &session.spec.trial;
-    let length = format!(
-        "ends after {} or {}",
-        count(trial.presses, "press", "presses"),
-        SessionTime::from_secs_f64(trial.seconds)
-    );
+    let orders = trial.orders.map(|orders| count(u64::from(orders), "served order", "served orders"));
+    let presses = count(trial.presses, "press", "presses");
+    let counts = orders.into_iter().chain([presses]).collect::<Vec<_>>().join(", ");
+    let length = format!("ends after {counts} or {}", SessionTime::from_secs_f64(trial.seconds));
     let mut facts =
         vec![fact("", who_plays(session), TextRole::Strong), fact("participant", place(session), TextRole::Strong)];
     facts.extend(missing_page(session, model));

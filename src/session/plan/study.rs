@@ -427,7 +427,7 @@ impl PlanPosition {
         let settings = |step: &PlanPosition| {
             let told = step.phases.iter().filter_map(PhaseSpec::told).collect();
             let own = json!({
-                "the starting group": step.group, "the condition": step.arm, "the number of conditions": step.periods,
+                "the starting group": step.group, "the number of conditions": step.periods,
                 "plan.aims": step.aims, "plan.familiarisation": step.criterion,
             });
             let mut values = BTreeMap::new();

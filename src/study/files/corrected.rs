@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::files::recordings;
-use crate::frozen_plan::RecordedPlan;
+use crate::frozen_plan::{PlaceInPlan, RecordedPlan};
 use tomcom_core::base::text::did_you_mean;
 use tomcom_session::files::file_error::{FileResult, read_text};
 use tomcom_session::files::parse::parse;
@@ -52,10 +52,19 @@ pub fn remarks(recording: &Path, correction: &CodeCorrection) -> FileResult<Vec<
         )),
         _ => {}
     }
-    let is_same = |other: &RecordedPlan| {
-        other.participant == *before && other.place.is_some_and(|place| place.period == step.period)
+    let has = |code: &String| {
+        let is_it = |place: PlaceInPlan| place.period == step.period;
+        others.iter().any(|other| other.participant == *code && other.place.is_some_and(is_it))
     };
-    if let Some(period) = step.period.filter(|_| !others.iter().any(is_same)) {
+    if let Some(period) = step.period.filter(|_| has(after)) {
+        told.push(format!(
+            "{after} has a recording of trial {period} of the plan \"{plan}\" already, beside this one: tomcom study takes only one; tomcom \
+             exclude leaves out the other one, and tomcom correct {} --undo takes the correction back",
+            recording.display()
+        ));
+    }
+    let was_wanted = plans.is_empty() || codes.contains(before);
+    if let Some(period) = step.period.filter(|_| was_wanted && !has(before)) {
         told.push(format!("the plan \"{plan}\" has no recording of trial {period} of {before} any more"));
     }
     Ok(told)

@@ -19,9 +19,9 @@ pub(super) fn concepts(captions: &mut Captions, figures: &StudySummary) -> Marku
             (figures.roc_beliefs_from.map_or("unknown sources", BeliefSource::words)) "." (key)
         }))
         (captions.figure(charts::equal_signals(figures), html! {
-            "Errors prevented against number of signals. Each point is one parameter value. A curve may fall, because a value that \
-             sends signals earlier may send one before the false belief begins; it prevents nothing and is not repeated for some \
-             time." (cut_off(figures)) (key)
+            "Errors prevented against number of signals. Each point is one parameter value. A curve may fall: a threshold \
+             that sends signals earlier may send one before the false belief begins, which prevents nothing and is not repeated for \
+             some time; longer proposals of DEV interrupt less often." (cut_off(figures)) (key)
         }))
     };
     let content = html! {
@@ -116,7 +116,8 @@ fn at_equal_signals(captions: &mut Captions, figures: &StudySummary) -> Markup {
         std::iter::once("prevented".to_string()).chain(signals).chain(["partial area".to_string()]).collect();
     let caption = format!(
         "Shares of the belief related errors prevented at equal interruptions per 100 presses of the human, and shares of useless \
-         ones among the signals, with intervals of 95 % by bootstrap over participants ({} in {} unassisted trials). The partial area is over false positive rates from 0 to {}, the largest that \
+         ones among the signals, with intervals of 95 % by bootstrap over participants ({} in {} unassisted trials). Values between the points of a curve, and between \
+         its sparsest point and no signals, are interpolated. The partial area is over false positive rates from 0 to {}, the largest that \
          all concepts reach, divided by that range; its interval has the range of those who are drawn. The paper prints no figures \
          here; its ToM-Com lies clearly above ToM and DEV.",
         figures.roc_participants,

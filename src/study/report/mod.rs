@@ -195,7 +195,7 @@ fn summary(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStati
             @if let Some(found) = &figures.arms {
                 (captions.figure(charts::ratios(&found.contrasts), html! {
                     "Ratio of the rates of two conditions, with its interval. Below 1 the first one has fewer; an interval across the line \
-                     at 1 shows no difference."
+                     at 1 does not show a difference."
                     @for (one, why) in found.contrasts.iter().filter_map(|one| Some((one, not_reliable(found, one)?))) {
                         " " (one.arm.title()) " to " (one.against.title()) ": " (why) "."
                     }

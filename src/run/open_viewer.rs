@@ -418,10 +418,8 @@ pub fn landmarks(recording: &Path, kinds: &[ReplayLandmark]) -> FileResult<Vec<R
         for ((number, (nth, press)), error) in (1..).zip(errors).zip(explained) {
             let coded = codes.iter().filter_map(|(rater, codes)| Some((rater, codes.0.get(&press.seq)?)));
             let coded: String = coded.map(|(rater, code)| format!("; {rater}: {}", wording::code(code))).collect();
-            let ExplainedError { press: name, with_cause, .. } = error;
-            let believed = follower.false_beliefs.told_before(session, press.time);
-            let believed = believed.map_or(String::new(), |believed| format!("; {believed}"));
-            let words = format!("error {number}: {name}: {with_cause}{believed}{coded}");
+            let told = error.told(follower.false_beliefs.told_before(session, press.time));
+            let words = format!("error {number}: {told}{coded}");
             add(press.time, follower.judged_until(nth), words);
         }
     }

@@ -401,9 +401,7 @@ impl SeekableReplay {
                 if self.is_blinded {
                     return Some(format!("{}: {}", error.press, error.why));
                 }
-                let believed = self.replay.follower.false_beliefs.told_before(session, now);
-                let believed = believed.map_or(String::new(), |believed| format!("; {believed}"));
-                Some(format!("{}: {}{believed}", error.press, error.with_cause))
+                Some(error.told(self.replay.follower.false_beliefs.told_before(session, now)))
             }
             ReplayLandmark::Signal => entries.find_map(|entry| match entry {
                 TimelineEvent::Noted(Event::SignalShown { by, signal, .. }) => {

@@ -9,6 +9,7 @@ use crate::settings::ParticipantKind;
 use crate::{Event, Session, TimestampedEvent};
 use tomcom_core::base::text::count;
 use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::offer::OfferWorth;
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption, SignalReason, aspects_told};
 use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::kitchen::AspectId;
@@ -32,6 +33,8 @@ pub struct ShownSignalRecord {
     pub words: Option<String>,
     /// Its value by the last advice before it.
     pub worth: Option<SignalOption>,
+    /// Its value when the offer of it opened, which the wizard took.
+    pub offered: Option<OfferWorth>,
     /// Session time; `None` while it is shown.
     pub ended: Option<SessionTime>,
     /// When the participant first looked at its place while it was shown.
@@ -44,6 +47,11 @@ impl ShownSignalRecord {
     /// The state aspects that it reveals.
     pub fn aspects(&self) -> &[AspectId] {
         &self.judged.aspects
+    }
+
+    /// Whether the wizard took it back.
+    pub fn is_taken_back(&self) -> bool {
+        self.judged.taken_back
     }
 }
 
@@ -155,6 +163,7 @@ impl WizardLog {
             reason,
             words,
             worth: advice.and_then(option),
+            offered: offer.and_then(|offer| offer.worth),
             ended: None,
             seen: None,
             judged,

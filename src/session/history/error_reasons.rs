@@ -18,12 +18,19 @@ pub struct ExplainedError {
     pub press: String,
     /// "order 1 needs tuna", "the hand is empty".
     pub why: String,
-    /// The cause, if it is known, the reason and the cost: "cause: slip; no order needs tuna; costs 2 presses". Raters are
-    /// not shown it.
+    /// The reason, the cause, if it is known, and the cost: "no order needs tuna; cause (simulated participant): slip; costs 2
+    /// presses". Raters are not shown it.
     pub with_cause: String,
 }
 
 impl ExplainedError {
+    /// The press with its reason, then what was believed wrong, cause and cost.
+    pub fn told(&self, believed: Option<String>) -> String {
+        let ExplainedError { press, why, with_cause, .. } = self;
+        let believed = believed.map_or(String::new(), |believed| format!("; {believed}"));
+        format!("{press}: {why}{believed}{}", with_cause.strip_prefix(why.as_str()).unwrap_or_default())
+    }
+
     /// The errors among judged presses of a session, whose timeline goes to the last of them at least. Their reasons need
     /// no cost to go beyond that of the judgements.
     pub fn among(session: &Session, judged: &[JudgedPress]) -> Vec<ExplainedError> {
@@ -38,11 +45,15 @@ impl ExplainedError {
             ExplainedError {
                 time: press.time,
                 press: wording::button(&session.kitchen, Agent::Human, press.button),
-                with_cause: event_words::cause(&session.kitchen, press)
-                    .into_iter()
-                    .chain([why.clone(), event_words::cost(press)])
-                    .collect::<Vec<_>>()
-                    .join("; "),
+                with_cause: [
+                    Some(why.clone()),
+                    event_words::cause(&session.kitchen, press),
+                    Some(event_words::cost(press)),
+                ]
+                .into_iter()
+                .flatten()
+                .collect::<Vec<_>>()
+                .join("; "),
                 why,
             }
         });
@@ -203,7 +214,10 @@ fn not_needed(kitchen: &Kitchen, orders: &[OrderNeeds], content: ContentId, at: 
     if all().any(|(_, needed)| counts(needed)) {
         return None;
     }
-    if let Some((order, needed)) = all().find(|(_, needed)| serves(kitchen, content, needed.item)) {
+    // What lies ready for an order is told rather than that another one has it.
+    let is_used = |needed: &NeededItem| matches!(needed.progress, ItemProgress::Stacked | ItemProgress::Missing);
+    let of_it = all().filter(|(_, needed)| serves(kitchen, content, needed.item));
+    if let Some((order, needed)) = of_it.min_by_key(|(_, needed)| is_used(needed)) {
         let (order, name) = (label(kitchen, order), name(content));
         return Some(match needed.progress {
             ItemProgress::Ready(at) | ItemProgress::InWork(at) => {

@@ -56,6 +56,7 @@ pub fn sent(follower: &SessionFollower, shown: &ShownSignalRecord) -> String {
             Sender::Wizard => format!("the assistant would have said: {why}"),
         }),
         shown.worth.as_ref().map(|option| worth(unit, option)),
+        shown.offered.map(|offered| format!("net benefit {:+.2} when it was offered", offered.net)),
     ];
     parts.into_iter().flatten().collect::<Vec<_>>().join("; ")
 }
@@ -73,7 +74,11 @@ pub fn outcome(follower: &SessionFollower, nth: usize) -> String {
     };
     let verdict = signal_verdicts(follower).and_then(|verdicts| verdicts.get(nth).copied());
     let judged = verdict.map(|verdict| format!("judged {} by the participant's own beliefs", verdict.name()));
-    [seen, belief(follower, shown), judged].into_iter().flatten().collect::<Vec<_>>().join("; ")
+    let taken_back = shown.is_taken_back().then(|| match shown.ended {
+        Some(ended) => format!("taken back after {}", after(ended)),
+        None => "taken back".to_string(),
+    });
+    [taken_back, seen, belief(follower, shown), judged].into_iter().flatten().collect::<Vec<_>>().join("; ")
 }
 
 /// What became of the beliefs that a signal is about, by the estimate.

@@ -230,11 +230,11 @@ fn an_error_is_explained_by_what_the_orders_need() {
         assert!(press.verdict.error, "{presses:?} is no error: {:?}", press.verdict);
         let explained = ExplainedError::among(&session, &[press]);
         assert_eq!(explained[0].why, why, "{presses:?}");
-        let cost = format!("{why}; costs {} press", press.verdict.excess);
-        assert!(explained[0].with_cause.starts_with(&cost), "{}", explained[0].with_cause);
+        let cost = format!("; costs {} press", press.verdict.excess);
+        assert!(explained[0].with_cause.starts_with(&format!("{why}{cost}")), "{}", explained[0].with_cause);
         let press = JudgedPress { cause: Some(ErrorCause::Slip), ..press };
         let caused = &ExplainedError::among(&session, &[press])[0].with_cause;
-        assert!(caused.starts_with(&format!("cause (simulated participant): slip; {cost}")), "{caused}");
+        assert!(caused.starts_with(&format!("{why}; cause (simulated participant): slip{cost}")), "{caused}");
     };
     check(&["crab maki"], &[(Human, "take shrimp")], "order 1 needs crab");
     // With two orders nobody knows for which of them it was.

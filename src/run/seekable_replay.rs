@@ -411,7 +411,10 @@ impl SeekableReplay {
                     };
                     let sent = signal_words::sent(follower, &follower.signals.shown[nth]);
                     let outcome = signal_words::outcome(follower, nth);
-                    Some(if outcome.is_empty() { sent } else { format!("{sent}; {outcome}") })
+                    // What became of it comes before what the assistant thought.
+                    let (signal, thought) = sent.split_once("; ").unwrap_or((&sent, ""));
+                    let parts = [signal, &outcome, thought].into_iter().filter(|part| !part.is_empty());
+                    Some(parts.collect::<Vec<_>>().join("; "))
                 }
                 _ => None,
             }),

@@ -12,6 +12,8 @@ use tomcom_core::mind::dirichlet::DirichletBelief;
 /// other events count at once.
 const EVERY_NS: u64 = 200_000_000;
 
+/// Largest number of false beliefs that are told before an error.
+const MOST_TOLD: usize = 3;
 /// Least duration of a false belief that lasts, in seconds.
 const LEAST_S: f64 = 1.0;
 
@@ -179,19 +181,19 @@ impl EstimatedFalseBeliefs {
         self.last(aspect, |began| began <= time, |ended| ended < time)
     }
 
-    /// What was believed wrong just before a press, for a second at least, in words: the two false beliefs that were held
-    /// longest.
+    /// What was believed wrong just before a press, in words: the false beliefs that were held longest, and how many more.
     pub fn told_before(&self, session: &Session, press: SessionTime) -> Option<String> {
         let kitchen = &session.kitchen;
         let aspects = (0..kitchen.aspects.len()).map(|index| AspectId(index as u8));
         let mut held: Vec<&EstimatedFalseBelief> = aspects.filter_map(|aspect| self.before(aspect, press)).collect();
-        held.retain(|one| session.age(one.began, press).as_secs_f64() >= LEAST_S);
         held.sort_by_key(|one| one.began);
-        let told = held.iter().take(2).map(|one| {
+        let told = held.iter().take(MOST_TOLD).map(|one| {
             let since = session.trial_clock_at(one.began);
             format!("{}: {} since {since}", one.about, one.told(kitchen))
         });
-        let told = told.collect::<Vec<_>>().join("; ");
+        let more = held.len().saturating_sub(MOST_TOLD);
+        let more = (more > 0).then(|| format!("+{more} more"));
+        let told = told.chain(more).collect::<Vec<_>>().join("; ");
         (!told.is_empty()).then(|| format!("believed wrong, by the estimate: {told}"))
     }
 

@@ -366,12 +366,13 @@ impl SeekableReplay {
         }
     }
 
-    /// Position after all events at the time of the next or previous landmark of this kind.
-    pub fn landmark(&mut self, what: ReplayLandmark, forward: bool) -> Option<usize> {
+    /// Position after all events at the time of the next or previous landmark of this kind. `here`: one at the present time
+    /// is found, too.
+    pub fn landmark(&mut self, what: ReplayLandmark, forward: bool, here: bool) -> Option<usize> {
         let (now, times) = (self.time(), self.landmarks(what));
         let found = match forward {
-            true => times.into_iter().find(|&time| time > now),
-            false => times.into_iter().rev().find(|&time| time < now),
+            true => times.into_iter().find(|&time| time > now || here && time == now),
+            false => times.into_iter().rev().find(|&time| time < now || here && time == now),
         };
         found.map(|time| self.until(time))
     }

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use super::Review;
 use crate::console::console_model::NoticeLevel;
-use crate::console::console_model::{ReplayAction, SPEEDS};
+use crate::console::console_model::{Playback, ReplayAction, SPEEDS};
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::Event;
 use tomcom_session::replay::ReplayLandmark;
@@ -65,7 +65,10 @@ impl Review {
 
     /// Moves the replay to the next or previous landmark of this kind, if there is one.
     fn look_for(&mut self, what: ReplayLandmark, forward: bool) {
-        match self.film.landmark(what, forward) {
+        // Where it stands at a landmark of another kind, one of this kind can have the same time.
+        let stands_at = self.model.playback.as_ref().and_then(Playback::stands_at);
+        let is_told = stands_at.is_some_and(|words| words.starts_with(what.name()));
+        match self.film.landmark(what, forward, !is_told) {
             Some(position) => {
                 self.stand_at(position);
                 self.name_landmark(what);

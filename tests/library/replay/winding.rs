@@ -116,8 +116,8 @@ fn a_blinded_replay_shows_no_signal_and_the_same_kitchen() {
     }
     assert!(is_signal(&open) > 0, "there are signals to be hidden");
     assert_eq!(open.errors, blind.errors);
-    assert_eq!(blind.landmark(ReplayLandmark::Signal, false), None);
-    let signal = open.landmark(ReplayLandmark::Signal, false).expect("a signal");
+    assert_eq!(blind.landmark(ReplayLandmark::Signal, false, false), None);
+    let signal = open.landmark(ReplayLandmark::Signal, false, false).expect("a signal");
     open.wind(signal);
     let named = open.named(ReplayLandmark::Signal).expect("a signal");
     let number = open.landmarks(ReplayLandmark::Signal).len();
@@ -144,7 +144,7 @@ fn a_replay_goes_from_one_error_signal_or_false_belief_to_the_next_and_back() {
     errors.dedup();
     assert!(errors.len() > 2, "{errors:?}");
     let mut visited = Vec::new();
-    while let Some(position) = film.landmark(ReplayLandmark::Error, true) {
+    while let Some(position) = film.landmark(ReplayLandmark::Error, true, false) {
         film.wind(position);
         visited.push(film.time());
         let named = film.named(ReplayLandmark::Error).expect("an error");
@@ -153,13 +153,14 @@ fn a_replay_goes_from_one_error_signal_or_false_belief_to_the_next_and_back() {
         assert!(named.contains("costs "), "the cost, and the cause where it is known: {named}");
     }
     assert_eq!(visited, errors);
-    let back = film.landmark(ReplayLandmark::Error, false).expect("the error before");
+    let back = film.landmark(ReplayLandmark::Error, false, false).expect("the error before");
     film.wind(back);
     assert_eq!(film.time(), errors[errors.len() - 2]);
-    assert_eq!(film.landmark(ReplayLandmark::Signal, true), None, "nobody sends signals");
+    assert_eq!(film.landmark(ReplayLandmark::Signal, true, false), None, "nobody sends signals");
     film.wind(0);
-    let wrong = film.landmark(ReplayLandmark::FalseBelief, true).expect("something is believed wrong");
+    let wrong = film.landmark(ReplayLandmark::FalseBelief, true, false).expect("something is believed wrong");
     film.wind(wrong);
+    assert_eq!(film.landmark(ReplayLandmark::FalseBelief, true, true), Some(wrong), "the one at which it stands");
     let named = film.named(ReplayLandmark::FalseBelief).expect("something is believed wrong");
     assert!(named.starts_with("false belief "), "{named}");
     assert!(named.contains(": thinks ") && named.contains(", is "), "{named}");

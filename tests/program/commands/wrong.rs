@@ -28,7 +28,7 @@ fn wrong_files_and_arguments_are_named_with_what_would_be_right() {
         assert!(complaint(&["review", "nowhere", &format!("--at={moment}")]).contains(moment), "{moment}");
     }
     for (word, hint) in [
-        ("dance", "'tomcom operate SESSION'"),
+        ("dance", "'tomcom --help' lists the commands"),
         ("sessions/default.toml", "'tomcom operate sessions/default.toml'"),
         ("nowhere.toml", "'tomcom operate nowhere.toml'"),
         ("tests/golden/format-3-hand.jsonl", "'tomcom replay tests/golden/format-3-hand.jsonl'"),

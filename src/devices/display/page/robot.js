@@ -9,6 +9,8 @@ const Robot = (() => {
   const SIZES = [7.4, 7.1, 6.8, 6.5, 6.2, 5.9, 5.6, 5.3], GAP = 0.15, FRAME = 0.8;
   // How far before the middle of the gripper it holds something, as a share of its size.
   const HELD = 0.2;
+  // How high it is at most, for the height of its own place.
+  const MOST_HIGH = 1.2;
   // How fast the drawn pose follows the one that is told, which comes 20 times a second.
   const FOLLOWS_MS = 40;
   let made = null, bin = null, stands = [], holds = "", told = null, drawn = null, ticked = 0;
@@ -56,7 +58,9 @@ const Robot = (() => {
     const isTheirs = ({ kind, agent }) => kind !== "human_hand" && agent !== "human", theirs = ({ locations, storages }) => [...locations, ...storages].filter(isTheirs);
     const spots = theirs(scene), from = theirs(wall), home = spots.findIndex(({ kind }) => kind === "robot_hand");
     const standing = (one) => spots.map((spot, index) => (index === home ? null : beside(spot, one, room, others, cards)));
-    const size = SIZES.find((one) => standing(one).every((stand) => stand !== undefined)) ?? SIZES[SIZES.length - 1];
+    // At rest it is clear of the name above its place.
+    const isLow = (one) => one * high <= MOST_HIGH * spots[home].area[3];
+    const size = SIZES.find((one) => isLow(one) && standing(one).every((stand) => stand !== undefined)) ?? SIZES[SIZES.length - 1];
     // At rest, what it holds is where the contents of its place are. Where there is no room beside a place, it lies below the place.
     const [x, y] = centre(spots[home].area), below = ([left, top, w, h]) => ({ at: [left + w / 2, top + h], towards: [0, -1], below: 1 });
     const rests = { at: [Math.max(x - HELD * size * wide, 0.5 * size * wide), y], towards: [1, 0] };

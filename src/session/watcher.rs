@@ -26,7 +26,7 @@ use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::communication::signal::SignalRepeatRule;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, KitchenChange, LocationId, State};
-use tomcom_core::measures::matching::{CommunicationEvent, ComparedContent};
+use tomcom_core::measures::matching::CommunicationEvent;
 use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_core::mind::filter::BeliefFilter;
 use tomcom_core::mind::observation::{Observation, ObservedEvidence};
@@ -227,7 +227,7 @@ impl SenderComparisonFollower {
 
     fn spoken(&self, what: Signal, time: SessionTime) -> Communication {
         let session = &self.follower.session;
-        let (press, content) = (self.presses(), ComparedContent::of_signal(&session.kitchen, &what));
+        let (press, content) = (self.presses(), what.compared(&session.kitchen));
         let said = CommunicationEvent { press, clock: session.trial_clock(time), content };
         Communication { said, time, what, known: self.known.clone() }
     }

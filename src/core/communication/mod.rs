@@ -8,4 +8,5 @@ pub mod recommendation;
 pub mod settings;
 pub mod signal;
 
-pub use signal::{HighlightSet, Sender, Signal, SignalKind, available, signals, unavailable};
+pub use crate::measures::matching::SignalKind;
+pub use signal::{HighlightSet, Sender, Signal, available, signals, unavailable};

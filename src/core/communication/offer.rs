@@ -8,8 +8,9 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::concept::{BenefitUnit, ConceptName};
 use super::recommendation::SignalReason;
-use super::signal::{Signal, SignalKind};
+use super::signal::Signal;
 use crate::base::time::SessionTime;
+use crate::measures::matching::SignalKind;
 
 /// Time after its opening in which an offer closes only if the wizard takes it, if its signal becomes impossible, or if
 /// the trial ends.

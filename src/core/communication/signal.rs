@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::recommendation::aspects_told;
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{Agent, AspectId, Kitchen, LocationId, LocationKind, OrderContent, State};
+use crate::measures::matching::{ComparedContent, SignalKind};
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::observation::MOST_PROPOSED;
 
@@ -21,37 +22,6 @@ pub enum Signal {
     Propose(Vec<String>),
 }
 
-/// The kind of a signal.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub enum SignalKind {
-    /// Shows an order's recipe.
-    Recipe,
-    /// Highlights a location.
-    Highlight,
-    /// Proposes presses.
-    Proposal,
-}
-
-impl SignalKind {
-    /// Name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            SignalKind::Recipe => "recipe",
-            SignalKind::Highlight => "highlight",
-            SignalKind::Proposal => "proposal",
-        }
-    }
-
-    /// Name in the log.
-    pub fn tag(self) -> &'static str {
-        match self {
-            SignalKind::Recipe => "show_recipe",
-            SignalKind::Highlight => "highlight",
-            SignalKind::Proposal => "propose",
-        }
-    }
-}
-
 impl Signal {
     /// The signal's kind.
     pub fn kind(&self) -> SignalKind {
@@ -60,6 +30,11 @@ impl Signal {
             Signal::Highlight(_) => SignalKind::Highlight,
             Signal::Propose(_) => SignalKind::Proposal,
         }
+    }
+
+    /// The signal in the form that the matching of communications compares.
+    pub fn compared(&self, kitchen: &Kitchen) -> ComparedContent {
+        ComparedContent { kind: self.kind(), target: self.location(kitchen) }
     }
 
     /// The things that the signal names: one location, or the buttons of a proposal.

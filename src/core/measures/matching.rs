@@ -18,11 +18,41 @@ use serde::{Deserialize, Serialize};
 
 use super::median;
 use crate::base::time::SessionTime;
-use crate::communication::signal::{Signal, SignalKind};
-use crate::kitchen::{Kitchen, LocationId};
+use crate::kitchen::LocationId;
 
 /// Default window within which two communications can match, in presses of the human.
 pub const WINDOW: u32 = 3;
+
+/// The kind of a signal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum SignalKind {
+    /// Shows an order's recipe.
+    Recipe,
+    /// Highlights a location.
+    Highlight,
+    /// Proposes presses.
+    Proposal,
+}
+
+impl SignalKind {
+    /// Name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            SignalKind::Recipe => "recipe",
+            SignalKind::Highlight => "highlight",
+            SignalKind::Proposal => "proposal",
+        }
+    }
+
+    /// Name in the log.
+    pub fn tag(self) -> &'static str {
+        match self {
+            SignalKind::Recipe => "show_recipe",
+            SignalKind::Highlight => "highlight",
+            SignalKind::Proposal => "propose",
+        }
+    }
+}
 
 /// Content of a communication, as far as the matching compares it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -31,13 +61,6 @@ pub struct ComparedContent {
     pub kind: SignalKind,
     /// Location that the communication is about; `None` for a communication without a location.
     pub target: Option<LocationId>,
-}
-
-impl ComparedContent {
-    /// The content of a signal.
-    pub fn of_signal(kitchen: &Kitchen, signal: &Signal) -> ComparedContent {
-        ComparedContent { kind: signal.kind(), target: signal.location(kitchen) }
-    }
 }
 
 /// A communication of wizard or assistant, with its time.

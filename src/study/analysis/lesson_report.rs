@@ -10,7 +10,7 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::recommendation::{aspects_told, phrase};
 use tomcom_core::communication::{Signal, signals, unavailable};
 use tomcom_core::kitchen::{AspectId, Kitchen};
-use tomcom_core::measures::matching::{CommunicationEvent, ComparedContent, MatchCounts, WINDOW};
+use tomcom_core::measures::matching::{CommunicationEvent, MatchCounts, WINDOW};
 use tomcom_core::measures::wizard_performance::{FalseBeliefPeriod, TrainingCriterion, WizardMeasures};
 use tomcom_core::mind::RecordedBelief;
 use tomcom_session::Session;
@@ -196,7 +196,7 @@ pub fn describe(record: &WizardTrainingRecord, path: &Path) -> String {
 
 pub fn with_oneself(kitchen: &Kitchen, one: &WatchedRecording, other: &WatchedRecording) -> Option<f64> {
     let said = |signal: &JudgedSignal| {
-        let content = ComparedContent::of_signal(kitchen, &signal.signal);
+        let content = signal.signal.compared(kitchen);
         CommunicationEvent { press: signal.press, clock: signal.clock_ns, content }
     };
     let [one, again] = [one, other].map(|time| time.signals.iter().map(said).collect::<Vec<CommunicationEvent>>());

@@ -28,7 +28,7 @@ use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, AspectId, Kitchen, KitchenChange};
 use tomcom_core::measures::attribution::{ErrorAttributor, ErrorCause};
-use tomcom_core::measures::matching::{CommunicationEvent, ComparedContent, WINDOW};
+use tomcom_core::measures::matching::{CommunicationEvent, WINDOW};
 use tomcom_core::measures::raters::BeliefSource;
 use tomcom_core::measures::sequences::{
     BeliefErrorCounts, ErrorSequence, FalseBeliefEpisode, sequences, sequences_any_aspect,
@@ -281,7 +281,7 @@ fn sent(session: &Session) -> Vec<CommunicationEvent> {
         match &entry.what {
             TimelineEvent::Press { agent: Agent::Human, .. } => press += 1,
             TimelineEvent::Noted(Event::SignalShown { signal, .. }) => {
-                let content = ComparedContent::of_signal(&session.kitchen, signal);
+                let content = signal.compared(&session.kitchen);
                 sent.push(CommunicationEvent { press, clock: clock_at(session, entry.time), content });
             }
             _ => {}

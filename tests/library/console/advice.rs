@@ -15,7 +15,7 @@ use tomcom::console::view::theme::{TerminalBackground, TextRole, Theme};
 use tomcom_core::communication::SignalKind;
 use tomcom_core::communication::offer::OfferCloseReason;
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption, SignalReason};
-use tomcom_core::measures::matching::{CommunicationEvent, ComparedContent};
+use tomcom_core::measures::matching::CommunicationEvent;
 use tomcom_session::history::belief_track;
 use tomcom_session::history::belief_track::BeliefSnapshot;
 use tomcom_session::history::comparison::{
@@ -465,7 +465,7 @@ fn compared(assistants: usize) -> Stage {
         let (state, screen) = (stage.session.state, Some(screen(&stage.session, &stage.model)));
         let known = CommunicationContext { seq: 7, state, held: held.clone(), advice: vec![advice; 3], screen };
         let clock = at(seconds - 3.0);
-        let said = CommunicationEvent { press, clock, content: ComparedContent::of_signal(&kitchen, &what) };
+        let said = CommunicationEvent { press, clock, content: what.compared(&kitchen) };
         Communication { said, time: at(seconds), what, known: Some(Arc::new(known)) }
     };
     let lane = |name: &str, concept, spoken| SenderCommunications { name: name.to_string(), concept, spoken };

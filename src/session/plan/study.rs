@@ -437,7 +437,7 @@ impl PlanPosition {
         let ((mut before, told_before), (mut after, told_now)): ((_, BTreeMap<_, _>), (_, BTreeMap<_, _>)) =
             (settings(self), settings(now));
         let mut found = Vec::new();
-        // What is told once, or not after every trial, is no part of each recording.
+        // A recording has only what was told around its own trial, so what only the plan has is no difference.
         for (path, value) in told_before {
             match told_now.get(&path) {
                 None => found.push(PlanDifference::text(format!("{path}, which is left out"))),

@@ -500,7 +500,7 @@ pub struct Playback {
     pub event: usize,
     pub events: usize,
     /// The landmark that a key went to last, in words, with the replay's position there; shown while the replay is there.
-    pub landmark: Option<(usize, String)>,
+    pub landmark: Option<(usize, ReplayLandmark, String)>,
     /// That no film of the recording has this moment, in words.
     pub outside_film: Option<&'static str>,
     pub follows: bool,
@@ -533,8 +533,9 @@ impl Playback {
     }
 
     /// The landmark at which the replay stands, if a key went there.
-    pub fn stands_at(&self) -> Option<&str> {
-        self.landmark.as_ref().filter(|(event, _)| *event == self.event).map(|(_, words)| words.as_str())
+    pub fn stands_at(&self) -> Option<(ReplayLandmark, &str)> {
+        let there = self.landmark.as_ref().filter(|(event, ..)| *event == self.event);
+        there.map(|(_, what, words)| (*what, words.as_str()))
     }
 
     /// The playback speed in words: "2x", "0.25x", "max".

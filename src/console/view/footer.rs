@@ -162,7 +162,7 @@ pub fn message(brush: &mut Painter, regions: &PanelAreas, session: &Session, mod
     if let Some(notice) = model.shown_notice() {
         let style = style_of(brush, notice);
         brush.text(area.x + 1, area.y, area.width - 1, &format!(" {} ", notice.text), style);
-    } else if let Some(landmark) = model.playback.as_ref().and_then(Playback::stands_at) {
+    } else if let Some((_, landmark)) = model.playback.as_ref().and_then(Playback::stands_at) {
         let strong = brush.style(TextRole::Strong);
         let (columns, ellipsis) = (area.width.saturating_sub(3), brush.theme.signs().ellipsis);
         for (row, line) in wrap_to(landmark, columns, area.height, ellipsis).iter().enumerate() {

@@ -67,7 +67,7 @@ impl Review {
     fn look_for(&mut self, what: ReplayLandmark, forward: bool) {
         // Where it stands at a landmark of another kind, one of this kind can have the same time.
         let stands_at = self.model.playback.as_ref().and_then(Playback::stands_at);
-        let is_told = stands_at.is_some_and(|words| words.starts_with(what.name()));
+        let is_told = stands_at.is_some_and(|(at, _)| at == what);
         match self.film.landmark(what, forward, !is_told) {
             Some(position) => {
                 self.stand_at(position);
@@ -83,7 +83,7 @@ impl Review {
     /// Shows which landmark of this kind the replay stands at, if it stands at one, and what it is.
     fn name_landmark(&mut self, what: ReplayLandmark) {
         let (position, said) = (self.film.position, self.film.named(what));
-        self.playback(|playback| playback.landmark = said.map(|said| (position, said)));
+        self.playback(|playback| playback.landmark = said.map(|said| (position, what, said)));
     }
 
     /// Goes to a session time, and plays on if it played.

@@ -35,6 +35,11 @@ impl SessionTime {
         format!("{self}.{:03}", self.ms() % 1000)
     }
 
+    /// Seconds to the millisecond: `402.305`.
+    pub fn in_seconds(self) -> String {
+        format!("{}.{:03}", self.ms() / 1000, self.ms() % 1000)
+    }
+
     /// Seconds from the session time `earlier` to this time; zero if `earlier` is later.
     pub fn secs_since(self, earlier: SessionTime) -> f64 {
         (self - earlier).as_secs_f64()

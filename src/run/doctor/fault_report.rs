@@ -129,7 +129,7 @@ fn warnings(recording: &Path) -> FileResult<(LogHeader, String)> {
 
 /// What an event warns of. Texts that people typed are left out.
 fn warning(stamped: &TimestampedEvent) -> Option<String> {
-    let at = format!("{:.3} s", stamped.time.as_secs_f64());
+    let at = format!("{} s", stamped.time.in_seconds());
     match &stamped.event {
         Event::Preflight { checks, overridden } => {
             let wrong = checks.iter().filter(|check| check.verdict != PreflightVerdict::Ok);

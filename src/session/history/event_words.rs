@@ -122,7 +122,7 @@ pub fn line(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<St
     let (words, session) = (printable(&words), &follower.session);
     Some(match session.phase {
         TrialPhase::Ready => format!("{:>11}  {words}", "before"),
-        _ => format!("{:>9.3} s  {words}", session.trial_clock(stamped.time).as_secs_f64()),
+        _ => format!("{:>9} s  {words}", session.trial_clock(stamped.time).in_seconds()),
     })
 }
 

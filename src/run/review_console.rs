@@ -16,6 +16,7 @@ use crate::console::coding::RaterSession;
 use crate::console::console_model::NoticeLevel;
 use crate::console::console_model::SenderComparisonView;
 use crate::console::console_model::{Playback, ReplayAction, SPEEDS};
+use crate::console::key_action::KeyAction;
 use crate::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, update};
 use crate::run::key_file::key_map;
 use crate::run::terminal::TerminalScreen;
@@ -151,12 +152,13 @@ impl Review {
         review.tell(0);
         let start = review.film.trial_start();
         review.stand_at(start);
-        let plays = review.model.coding.is_none();
-        review.playback(|playback| playback.playing = plays);
-        review.begin_coding();
+        let plays = review.model.keys.chord_for(&KeyAction::Move(ReplayAction::PlayPause));
         if follow {
             review.go(ReplayAction::ToEnd);
+        } else if let Some(key) = plays {
+            review.model.say(NoticeLevel::Done, format!("paused; {key} plays"));
         }
+        review.begin_coding();
         // Raters have to know before they code without it.
         if let Some(why) = unshown {
             let coding = review.model.coding.as_ref().map(rater_files::opening_words);

@@ -125,7 +125,6 @@ def replay(tomcom, recording, repeats):
     for _ in range(repeats):
         terminal = Terminal(tomcom, "replay", recording, folder=Path.cwd())
         frames.append(terminal.until(lambda lines: position(lines) is not None))
-        terminal.send(".")
         terminal.until(has("paused"))
         # At the end all of it is read.
         terminal.send("\x1b[F")

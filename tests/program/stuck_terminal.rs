@@ -116,10 +116,10 @@ fn a_replay_and_a_training_end_when_nobody_reads_their_terminal() {
     check(
         &terminal,
         &["replay", &recording],
-        |terminal| terminal.see("play 1x"),
+        |terminal| terminal.see("paused 1x"),
         |terminal| terminal.signal(Signal::TERM),
     );
-    check(&terminal, &["replay", &recording], |terminal| terminal.see("play 1x"), |terminal| terminal.key("Escape"));
+    check(&terminal, &["replay", &recording], |terminal| terminal.see("paused 1x"), |terminal| terminal.key("Escape"));
     let training = ["train", &recording, "--wizard", "W7", "--out", &out];
     check(
         &terminal,

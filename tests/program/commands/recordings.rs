@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::{check, complaint, figures};
-use crate::program::folder;
+use crate::program::{done, folder};
 
 #[test]
 fn a_closed_recording_is_excluded_and_taken_back_and_the_figures_say_so() {
@@ -201,7 +201,7 @@ fn errors_of_a_recording_are_listed_as_commands_that_open_the_viewer_there() {
     let told = list(&["--errors", "--signals", "--beliefs"]);
     let line =
         |words: &str| told.lines().find(|line| line.contains(words)).unwrap_or_else(|| panic!("{words}: {told}"));
-    for words in [", error 1: ", ", error 3: ", ", false belief 1: ", ", signal: "] {
+    for words in [", error 1: ", ", error 3: ", ", false belief 1: ", ", signal 1: "] {
         let (command, comment) = line(words).split_once("  # to ").expect("a comment");
         assert!(comment.split_once(words.trim_end()).is_some_and(|(until, _)| !until.is_empty()), "{comment}");
         let at = command.strip_prefix(&format!("tomcom review {recording} --at ")).expect("a command");
@@ -212,7 +212,7 @@ fn errors_of_a_recording_are_listed_as_commands_that_open_the_viewer_there() {
     let until = ["a look", "a press of the", "a signal", "the kitchen", "another wrong value", "the trial ended"];
     for line in told.lines().filter(|line| line.contains(", false belief")) {
         let end = line.split_once(" s, until ").map_or("", |(_, end)| end);
-        assert!(until.iter().any(|until| end.starts_with(until)), "{line}");
+        assert!(until.iter().any(|until| end.starts_with(until)) && !line.contains("for 0.0 s"), "{line}");
     }
     // What was believed wrong before an error.
     assert!(
@@ -222,11 +222,23 @@ fn errors_of_a_recording_are_listed_as_commands_that_open_the_viewer_there() {
     // Each option lists its own only.
     let listed = list(&["--errors"]);
     assert!(listed.lines().all(|line| line.contains(", error ")), "{listed}");
-    assert!(list(&["--signals"]).lines().all(|line| line.contains(", signal: ")));
+    let signals = list(&["--signals"]);
+    for (number, line) in (1..).zip(signals.lines()) {
+        assert!(line.contains(&format!(", signal {number}: ")) && line.contains("; hit: not known"), "{line}");
+    }
     // What is as short as the estimate tells can be left out.
     let least = list(&["--beliefs", "--least", "5"]).lines().count();
     assert!(least < list(&["--beliefs"]).lines().count(), "{least}");
     assert!(complaint(&["review", recording, "--least", "5"]).contains("--beliefs"));
+    // A time is the same to the millisecond wherever it is told.
+    let replayed = done(&["replay", recording]);
+    let told_at = |at: &str| replayed.lines().any(|line| line.trim_start().starts_with(&format!("{at} s  human")));
+    for line in listed.lines() {
+        let at = line.split_once(" --at ").and_then(|(_, rest)| rest.split_once("  # ")).expect("a command").0;
+        let [minutes, seconds, ms] = at.split([':', '.']).collect::<Vec<_>>()[..] else { panic!("{at}") };
+        let [minutes, seconds] = [minutes, seconds].map(|number| number.parse::<u32>().expect("a number"));
+        assert!(told_at(&format!("{}.{ms}", 60 * minutes + seconds)), "{line}");
+    }
     let errors = listed.lines().count() as u64;
     assert_eq!(Value::from(errors), figures(&["replay", recording, "--format", "json"], 0)["errors"]);
 }

@@ -22,10 +22,12 @@ fn a_running_session_is_watched_from_another_terminal_and_looked_at_again() {
     other.key("Escape");
     other.is_whole(0);
     other.run(&["replay", &recording]);
-    other.see("play 1x");
+    // It stands there until it is played.
+    other.see("paused; . plays");
+    other.see("paused 1x");
     assert!(!other.screen().contains("READY"), "a replay opens at the start of the trial: {}", other.screen());
     for (key, seen) in
-        [("+", "play 2x"), (".", "paused 2x"), ("End", "ENDED EARLY"), ("Home", "before the trial, 0:00 of")]
+        [(".", "play 1x"), ("+", "play 2x"), ("End", "ENDED EARLY"), ("Home", "before the trial, 0:00 of")]
     {
         other.key(key);
         other.see(seen);
@@ -146,7 +148,7 @@ fn a_recording_of_a_folder_is_chosen_from_a_list_by_typing() {
     terminal.see("s001_");
     terminal.see("1 of 2");
     terminal.key("Enter");
-    terminal.see("play 1x");
+    terminal.see("paused 1x");
     terminal.key("Escape");
     terminal.is_whole(0);
     terminal.run(&["replay", &terminal.recordings(), "--verify"]);

@@ -425,9 +425,7 @@ pub fn landmarks(recording: &Path, kinds: &[ReplayLandmark]) -> FileResult<Vec<R
     }
     if kinds.contains(&ReplayLandmark::Signal) {
         for (nth, shown) in follower.signals.shown.iter().enumerate() {
-            let (sent, outcome) = (signal_words::sent(follower, shown), signal_words::outcome(follower, nth));
-            let told: Vec<String> = [sent, outcome].into_iter().filter(|part| !part.is_empty()).collect();
-            add(shown.time, shown.ended, format!("signal: {}", told.join("; ")));
+            add(shown.time, shown.ended, format!("signal {}: {}", nth + 1, signal_words::told(follower, nth)));
         }
     }
     if kinds.contains(&ReplayLandmark::FalseBelief) {

@@ -13,7 +13,7 @@ use tomcom_session::follower::SessionFollower;
 use tomcom_session::history::belief_track::{BeliefHistory, BeliefSnapshot};
 use tomcom_session::history::error_reasons::ExplainedError;
 use tomcom_session::history::false_beliefs::EstimatedFalseBelief;
-use tomcom_session::history::{event_words, signal_words, wording};
+use tomcom_session::history::{event_words, signal_words};
 use tomcom_session::log::LogPlace;
 use tomcom_session::replay::RecordingReplay;
 use tomcom_session::replay::ReplayLandmark;
@@ -404,21 +404,11 @@ impl SeekableReplay {
                 }
                 Some(error.told(self.replay.follower.false_beliefs.told_before(session, now)))
             }
-            ReplayLandmark::Signal => entries.find_map(|entry| match entry {
-                TimelineEvent::Noted(Event::SignalShown { by, signal, .. }) => {
-                    let (follower, mut shown) = (&self.replay.follower, self.replay.follower.signals.shown.iter());
-                    let Some(nth) = shown.position(|shown| shown.time == now) else {
-                        return Some(format!("{}, by the {}", wording::signal(signal), wording::sender(*by)));
-                    };
-                    let sent = signal_words::sent(follower, &follower.signals.shown[nth]);
-                    let outcome = signal_words::outcome(follower, nth);
-                    // What became of it comes before what the assistant thought.
-                    let (signal, thought) = sent.split_once("; ").unwrap_or((&sent, ""));
-                    let parts = [signal, &outcome, thought].into_iter().filter(|part| !part.is_empty());
-                    Some(parts.collect::<Vec<_>>().join("; "))
-                }
-                _ => None,
-            }),
+            ReplayLandmark::Signal => {
+                let follower = &self.replay.follower;
+                let nth = follower.signals.shown.iter().position(|shown| shown.time == now)?;
+                Some(signal_words::told(follower, nth))
+            }
             ReplayLandmark::Marker => entries.find_map(|entry| match entry {
                 TimelineEvent::Noted(Event::Marker { note, observer }) => {
                     Some(event_words::noted_words(note, observer.as_deref()))

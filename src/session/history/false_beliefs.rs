@@ -83,9 +83,9 @@ impl EstimatedFalseBelief {
 
     /// The same, with the duration and what ended it: "cooking pot: thinks empty, is nori; for 2.3 s, until a look".
     pub fn whole(&self, session: &Session) -> String {
-        let (told, lasted_s) = (self.told(&session.kitchen), self.lasted_s(session));
+        let (told, lasted) = (self.told(&session.kitchen), wording::seconds(self.lasted_s(session)));
         let end = self.end.map_or(String::new(), |end| format!(", {}", end.words()));
-        format!("{}: {told}; for {lasted_s:.1} s{end}", self.about)
+        format!("{}: {told}; for {lasted}{end}", self.about)
     }
 }
 

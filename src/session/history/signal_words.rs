@@ -8,6 +8,7 @@ use tomcom_core::communication::Sender;
 use tomcom_core::communication::concept::BenefitUnit;
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption, SignalReason};
 use tomcom_core::kitchen::{AspectId, Kitchen};
+use tomcom_core::measures::wizard_performance::SignalVerdict;
 
 /// A wrong belief below this probability is no reason to tell of a signal that a wizard chose.
 const LEAST_SAID: f64 = 0.2;
@@ -42,8 +43,8 @@ pub fn advised(kitchen: &Kitchen, unit: BenefitUnit, advice: &Recommendation) ->
     Some(parts.into_iter().flatten().collect::<Vec<_>>().join("; "))
 }
 
-/// "recipe of order 1, by the assistant; saves …; the human takes …".
-pub fn sent(follower: &SessionFollower, shown: &ShownSignalRecord) -> String {
+/// In parts: "recipe of order 1, by the assistant", then what the assistant thought: "the human takes …", "saves …".
+pub fn sent(follower: &SessionFollower, shown: &ShownSignalRecord) -> Vec<String> {
     let session = &follower.session;
     let unit = session.spec.assistant.concept.name().unit();
     // An assistant's reason for what a wizard sent is told if the assistant gave it some weight.
@@ -58,27 +59,45 @@ pub fn sent(follower: &SessionFollower, shown: &ShownSignalRecord) -> String {
         shown.worth.as_ref().map(|option| worth(unit, option)),
         shown.offered.map(|offered| format!("net benefit {:+.2} when it was offered", offered.net)),
     ];
-    parts.into_iter().flatten().collect::<Vec<_>>().join("; ")
+    parts.into_iter().flatten().collect()
 }
 
-/// What became of a signal that is over: whether the participant looked at it, what the estimate says of the belief it is
-/// about, and how it is judged once the trial is over. `nth`: its index among the signals shown.
+/// A signal with its sender, whether it was a hit, what became of it, and last what the assistant thought. `nth`: its index
+/// among the signals shown.
+pub fn told(follower: &SessionFollower, nth: usize) -> String {
+    let mut parts = sent(follower, &follower.signals.shown[nth]);
+    parts.insert(1, judged(follower, nth));
+    parts.insert(2, outcome(follower, nth));
+    parts.retain(|part| !part.is_empty());
+    parts.join("; ")
+}
+
+/// Whether a signal was a hit, by the participant's own beliefs, as the study counts it: "hit: no, late".
+pub fn judged(follower: &SessionFollower, nth: usize) -> String {
+    match signal_verdicts(follower).and_then(|verdicts| verdicts.get(nth).copied()) {
+        Some(SignalVerdict::Hit { .. }) => "hit: yes".to_string(),
+        Some(other) => format!("hit: no, {}", other.name()),
+        None if follower.session.is_trial_over() => "hit: not known".to_string(),
+        None => "hit: not known before the trial is over".to_string(),
+    }
+}
+
+/// What became of a signal that is over: whether the participant looked at it, and what the estimate says of the belief it is
+/// about. `nth`: its index among the signals shown.
 pub fn outcome(follower: &SessionFollower, nth: usize) -> String {
     let Some(shown) = follower.signals.shown.get(nth) else { return String::new() };
     let session = &follower.session;
-    let after = |time: SessionTime| format!("{:.1} s", session.age(shown.time, time).as_secs_f64());
+    let after = |time: SessionTime| wording::seconds(session.age(shown.time, time).as_secs_f64());
     let has_place = shown.signal.location(&session.kitchen).is_some() && session.gaze.samples > 0;
     let seen = match shown.seen {
         Some(seen) => Some(format!("looked at after {}", after(seen))),
         None => has_place.then(|| "not looked at".to_string()),
     };
-    let verdict = signal_verdicts(follower).and_then(|verdicts| verdicts.get(nth).copied());
-    let judged = verdict.map(|verdict| format!("judged {} by the participant's own beliefs", verdict.name()));
     let taken_back = shown.is_taken_back().then(|| match shown.ended {
         Some(ended) => format!("taken back after {}", after(ended)),
         None => "taken back".to_string(),
     });
-    [taken_back, seen, belief(follower, shown), judged].into_iter().flatten().collect::<Vec<_>>().join("; ")
+    [taken_back, seen, belief(follower, shown)].into_iter().flatten().collect::<Vec<_>>().join("; ")
 }
 
 /// What became of the beliefs that a signal is about, by the estimate.
@@ -97,8 +116,8 @@ fn belief(follower: &SessionFollower, shown: &ShownSignalRecord) -> Option<Strin
     let name = |aspect: &AspectId| wording::location(&session.kitchen.aspects[aspect.index()].name);
     let told = was_false.iter().map(|aspect| match track.corrected(*aspect, shown.time) {
         Some(right) if right <= end => {
-            let after_s = session.age(shown.time, right).as_secs_f64();
-            format!("by the estimate the belief about {} is right after {after_s:.1} s", name(aspect))
+            let after = wording::seconds(session.age(shown.time, right).as_secs_f64());
+            format!("by the estimate the belief about {} is right after {after}", name(aspect))
         }
         _ => format!("by the estimate the belief about {} stays false", name(aspect)),
     });

@@ -45,6 +45,11 @@ pub fn idle(reason: IdleReason, waits_for: &[impl AsRef<str>], gave_up: Option<A
     vec![told]
 }
 
+/// A duration to a tenth of a second: "2.3 s"; what is shorter is not told as none.
+pub fn seconds(seconds: f64) -> String {
+    if seconds < 0.1 { "less than 0.1 s".to_string() } else { format!("{seconds:.1} s") }
+}
+
 pub fn location(name: &str) -> String {
     name.replace('_', " ")
 }

@@ -61,8 +61,10 @@ def expected(log):
         at, before = (event["t_ns"], event["seq"]), contents()
         add = lambda entity: found.setdefault(entity, []).append(at)
         match event["kind"]:
-            case "trial_started" | "trial_resumed":
+            case "trial_started" | "trial_resumed" as kind:
                 running = True
+                if kind == "trial_started":
+                    add("assistant/benefit/cost_line")
             case "trial_paused" | "trial_ended" | "trial_aborted":
                 running = False
             case "gaze":

@@ -30,16 +30,18 @@ pub(super) const SESSION_TIME: &str = "session_time";
 /// Durations of the gaze's trail and of its last part, in nanoseconds.
 const TRAIL_NS: i64 = 1_500_000_000;
 const RECENT_NS: i64 = 500_000_000;
-/// Durations that plots show before and after the time cursor, in nanoseconds: the legend lies on the first part.
+/// Durations that bars and curves show before and after the time cursor, and the room for the legend before the curves, in
+/// nanoseconds.
 const BEFORE_NS: i64 = 45_000_000_000;
 const AFTER_NS: i64 = 15_000_000_000;
+const LEGEND_NS: i64 = 35_000_000_000;
 
 /// Position of the camera, and the point at which it looks, in metres from the arm's base: the view shows the whole
 /// table from the human's side.
 const EYE_M: [f32; 3] = [1.3, -1.0, 0.98];
 const LOOKED_AT_M: [f32; 3] = [0.3, 0.0, 0.2];
-/// Range of the axis of probabilities, with room for the legend above the curves.
-const PROBABILITY: [f64; 2] = [-0.03, 1.5];
+/// Range of the axis of probabilities.
+const PROBABILITY: [f64; 2] = [-0.03, 1.03];
 
 /// One of the recordings that a stream shows side by side.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -132,15 +134,15 @@ impl ViewerLayout {
 fn alone(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
     let mut views = vec![beliefs(lane, properties)];
     views.extend(benefit(lane, properties));
-    views.push(lanes(lane, "Probes: answers and estimate", &["human/probes/**"], properties));
+    views.push(whole(lane, "Probes in the whole trial", &["human/probes/**"], properties));
     if lane.has_arm {
         views.insert(0, arm(lane, properties));
         views.push(series(lane, "Joint angles (degrees)", &["robot/joints/**"], properties));
         views.push(series(lane, "Force (N), hand (cm)", &["robot/force", "robot/hand_away"], properties));
-        views.push(lanes(lane, "Safety", &["robot/safety/**"], properties));
+        views.push(whole(lane, "Safety in the whole trial", &["robot/safety/**"], properties));
     }
-    let bars = Tabs::new([overview(lane, properties), looks(lane, properties)]);
-    let below = Horizontal::new([bars.into(), Tabs::new(views).into()]).with_column_shares([3.0, 2.0]);
+    let bars = Tabs::new(bars(lane, properties));
+    let below = Horizontal::new([bars.into(), Tabs::new(views).into()]).with_column_shares([1.0, 1.0]);
     let left = Vertical::new([seen(lane, properties), below.into()]).with_row_shares([5.0, 3.0]);
     let words = Tabs::new([now(lane), page(lane, "Signals", "signals/page"), about(lane)]);
     let side = Vertical::new([words.into(), happened(lane, properties)]).with_row_shares([1.0, 1.0]);
@@ -149,7 +151,8 @@ fn alone(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike
 
 /// Viewer layout for one of several recordings side by side: what is in words has the whole width of its part.
 fn beside(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
-    let mut curves = vec![overview(lane, properties), looks(lane, properties), beliefs(lane, properties)];
+    let mut curves = Vec::from(bars(lane, properties));
+    curves.push(beliefs(lane, properties));
     curves.extend(benefit(lane, properties));
     let told = Tabs::new([now(lane), page(lane, "Signals", "signals/page"), about(lane)]);
     let parts = [seen(lane, properties), Tabs::new(curves).into(), told.into(), happened(lane, properties)];
@@ -212,11 +215,6 @@ fn kitchen(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLi
     view
 }
 
-/// The time that plots show.
-fn around() -> TimeRange {
-    cursor(-BEFORE_NS, AFTER_NS)
-}
-
 /// A range of time about the viewer's cursor.
 fn cursor(from_ns: i64, to_ns: i64) -> TimeRange {
     let [start, end] = [from_ns, to_ns].map(|ns| TimeRangeBoundary::CursorRelative(TimeInt(ns)));
@@ -236,10 +234,12 @@ fn series(lane: &ShownRecording, name: &str, entities: &[&str], properties: &mut
     let view = TimeSeriesView::new(name).with_origin(path(lane, "")).with_contents(contents);
     let view = with(view, "PlotLegend", &PlotLegend::new().with_corner(Corner2D::LeftTop), properties);
     // What is not in this time is not in the legend either.
-    let shown = |timeline: &str| VisibleTimeRange { timeline: timeline.into(), range: around() };
+    let range = cursor(-BEFORE_NS, AFTER_NS);
+    let shown = |timeline: &str| VisibleTimeRange { timeline: timeline.into(), range };
     let shown = VisibleTimeRanges::new([TRIAL_TIME, SESSION_TIME].map(shown));
     let view = with(view, "VisibleTimeRanges", &shown, properties);
-    with(view, "TimeAxis", &TimeAxis::new().with_view_range(around()), properties)
+    let axis = TimeAxis::new().with_view_range(cursor(-BEFORE_NS - LEGEND_NS, AFTER_NS));
+    with(view, "TimeAxis", &axis, properties)
 }
 
 /// A view of belief probabilities of the aspects that were false once: the estimate and, for a simulated participant, its
@@ -251,26 +251,30 @@ fn beliefs(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLi
 }
 
 fn benefit(lane: &ShownRecording, properties: &mut Vec<Property>) -> Option<ContainerLike> {
-    let name = "Net benefit of signals (presses)";
+    let name = "Net benefit from first advice on";
     lane.has_advice.then(|| series(lane, name, &["assistant/benefit/**"], properties))
 }
 
-/// A view of states over time, as lanes with words; of all the time, also while data come.
-fn lanes(lane: &ShownRecording, name: &str, entities: &[&str], properties: &mut Vec<Property>) -> ContainerLike {
+/// A view of states over time, as lanes with words.
+fn lanes(lane: &ShownRecording, name: &str, entities: &[&str]) -> StateTimelineView {
     let view = StateTimelineView::new(name).with_origin(path(lane, ""));
-    let view = view.with_contents(entities.iter().map(|entities| path(lane, entities)));
-    with(view, "TimeAxis", &TimeAxis::new().with_link(LinkAxis::LinkToGlobal), properties)
+    view.with_contents(entities.iter().map(|entities| path(lane, entities)))
 }
 
-fn overview(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
-    lanes(lane, "Errors, signals, wrong beliefs", &["error", "signal", "wrong_belief/**"], properties)
+/// The lanes of all the time, also while data come.
+fn whole(lane: &ShownRecording, name: &str, entities: &[&str], properties: &mut Vec<Property>) -> ContainerLike {
+    let axis = TimeAxis::new().with_link(LinkAxis::LinkToGlobal);
+    with(lanes(lane, name, entities), "TimeAxis", &axis, properties)
 }
 
-/// The places that are looked at, about the time cursor: over a whole trial there are too many.
-fn looks(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLike {
-    let view = StateTimelineView::new("Looks").with_origin(path(lane, ""));
-    let view = view.with_contents([path(lane, "look")]);
-    with(view, "TimeAxis", &TimeAxis::new().with_view_range(around()), properties)
+/// Errors, signals and wrong beliefs: about the time cursor, with the looks, of which a whole trial has too many; and all.
+fn bars(lane: &ShownRecording, properties: &mut Vec<Property>) -> [ContainerLike; 2] {
+    let now = lanes(lane, "Errors, looks, signals, wrong beliefs", &["error", "look", "signal", "wrong_belief/**"]);
+    let axis = TimeAxis::new().with_view_range(cursor(-BEFORE_NS, AFTER_NS));
+    [
+        with(now, "TimeAxis", &axis, properties),
+        whole(lane, "Whole trial", &["error", "signal", "wrong_belief/**"], properties),
+    ]
 }
 
 fn page(lane: &ShownRecording, name: &str, entity: &str) -> ContainerLike {

@@ -180,7 +180,7 @@ pub fn robot_does(session: &Session) -> String {
                 buttons.iter().map(|&button| kitchen.button(Agent::Human, button).name.as_str()).collect();
             wording::idle(*reason, &names, robot.gave_up).swap_remove(0)
         }
-        None => String::new(),
+        None => "waits".to_string(),
     }
 }
 

@@ -2,7 +2,7 @@
 //! shown and believed.
 
 use super::entity_content::{self, CURVES, EntityData, EntityUpdate, MarkShape, SceneLogLevel, SeriesStyle, slug};
-use super::happenings::JudgedPressShown;
+use super::happenings::{self, JudgedPressShown};
 use super::{SceneInputs, moment_on_clock};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, AspectId, Kitchen, State, StateAspect};
@@ -10,7 +10,7 @@ use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_core::mind::{RecordedBelief, RecordedEstimate};
 use tomcom_session::follower::SessionFollower;
-use tomcom_session::history::{event_words, signal_words, wording};
+use tomcom_session::history::{event_words, wording};
 use tomcom_session::{Event, Session, TimelineEntry, TimelineEvent, TimestampedEvent};
 
 /// Period of updates of the belief estimate between presses, in nanoseconds.
@@ -94,12 +94,11 @@ fn wrong(aspect: &str) -> String {
 /// Entity updates with the names and colours of the curves and marks.
 pub fn fixed_beliefs(kitchen: &Kitchen) -> Vec<EntityUpdate> {
     let of_aspect = |aspect: &StateAspect| {
-        let name = wording::location(&aspect.name);
-        let own = SeriesStyle { name: Some(format!("{name} \u{25c6}")), colour: None };
-        let estimate = SeriesStyle { name: Some(name), colour: None };
+        // The marks of the participant's own belief have the colour and name of the curve: one line of the legend.
+        let series = SeriesStyle { name: Some(wording::location(&aspect.name)), colour: None };
         [
-            EntityUpdate::new(estimated(&aspect.name), EntityData::Line(estimate)),
-            EntityUpdate::new(held_truly(&aspect.name), EntityData::Marks(own, MarkShape::Diamond)),
+            EntityUpdate::new(estimated(&aspect.name), EntityData::Line(series.clone())),
+            EntityUpdate::new(held_truly(&aspect.name), EntityData::Marks(series, MarkShape::Diamond)),
         ]
     };
     kitchen.aspects.iter().flat_map(of_aspect).collect()
@@ -139,8 +138,7 @@ impl BeliefScene {
         let shown = session.shown.as_ref();
         if shown.map(|shown| shown.since) != self.signal_since {
             self.signal_since = shown.map(|shown| shown.since);
-            let record = shown.and_then(|shown| follower.signals.shown.iter().rfind(|one| one.time == shown.since));
-            self.signal = record.map_or_else(String::new, |record| signal_words::sent(follower, record));
+            self.signal = shown.and_then(|shown| happenings::numbered(follower, shown.since)).unwrap_or_default();
             rows.push(EntityUpdate::new(SIGNALS, EntityData::State(self.signal.clone(), entity_content::SIGNAL)));
         }
         let page = self.page();
@@ -192,8 +190,8 @@ impl BeliefScene {
         if let Some(before) = self.before.take_if(|_| self.is_error) {
             let since = |aspect| {
                 let began = follower.false_beliefs.before(aspect, session.time)?.began;
-                let lasted_s = session.age(began, session.time).as_secs_f64();
-                Some(format!("{} ({lasted_s:.1} s)", moment_on_clock(session.trial_clock_at(began))))
+                let lasted = wording::seconds(session.age(began, session.time).as_secs_f64());
+                Some(format!("{} ({lasted})", moment_on_clock(session.trial_clock_at(began))))
             };
             self.held_before = believed(kitchen, before, &held, since);
             self.press += &titled("Believed wrong before it, by the estimate", &self.held_before);
@@ -242,8 +240,9 @@ impl BeliefScene {
         rows
     }
 
-    /// The trial is over, and with it the last error.
+    /// The trial is over, and with it the last error and advice.
     pub fn ended(&mut self) -> Option<EntityUpdate> {
+        self.advice.clear();
         let was_error = std::mem::take(&mut self.is_error);
         was_error.then(|| EntityUpdate::new(ERRORS, EntityData::State(String::new(), entity_content::ERROR)))
     }
@@ -332,14 +331,15 @@ impl BeliefScene {
     }
 
     fn page(&self) -> String {
-        let told = |what: &str, text: &str| match text {
-            "" => String::new(),
-            text => format!("\n**{what}**: {text}\n"),
-        };
-        let signal = told("Signal on the display", &self.signal);
-        let (advice, gaze) = (told("Assistant", &self.advice), told("Looks at", &self.gaze));
-        let robot = told("Robot", &self.robot);
-        format!("{}{signal}{advice}{robot}{gaze}{}", self.press, self.estimate)
+        fn or<'a>(text: &'a str, without: &'a str) -> &'a str {
+            if text.is_empty() { without } else { text }
+        }
+        let press = or(&self.press, "**Last press**: none so far\n");
+        let (signal, advice) = (or(&self.signal, "no signal"), or(&self.advice, "no advice"));
+        format!(
+            "{press}\n**On the display**: {signal}\n\n**Assistant**: {advice}\n\n**Robot**: {}\n\n**Looks at**: {}\n{}",
+            self.robot, self.gaze, self.estimate
+        )
     }
 }
 
@@ -375,8 +375,7 @@ fn percent(held: &Held) -> String {
 
 /// A time on the trial's clock as the console shows it, and as the viewer does: "1:25.6 (+85.619s)".
 fn in_both_clocks(time: SessionTime) -> String {
-    let ms = time.ms();
-    format!("{} (+{}.{:03}s)", moment_on_clock(time), ms / 1000, ms % 1000)
+    format!("{} (+{}s)", moment_on_clock(time), time.in_seconds())
 }
 
 /// What is believed about a state aspect and what is true, in words.

@@ -2,6 +2,8 @@
 
 use super::entity_content::{self, EntityData, MarkShape, SceneColour, SceneLogLevel, SeriesStyle, slug};
 use super::{EntityUpdate, moment_on_clock};
+use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::concept::BenefitUnit;
 use tomcom_core::communication::offer::{OfferCloseReason, OfferedAdvice};
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::communication::{Sender, Signal, signals};
@@ -45,11 +47,14 @@ pub fn fixed(session: &Session) -> Vec<EntityUpdate> {
         .zip(entity_content::CURVES.into_iter().cycle())
         .map(|((_, signal), colour)| line(benefit(signal), wording::signal(signal), colour))
         .collect();
-    let worth = format!("worth its cost ({}) above this line", assistant.price());
+    let worth = match assistant.concept.name().unit() {
+        BenefitUnit::Deviation => format!("above the threshold {}", assistant.price()),
+        BenefitUnit::Presses | BenefitUnit::None => format!("worth its {} presses above", assistant.price()),
+    };
     rows.push(line(COST_LINE.to_string(), worth, entity_content::SIGNAL));
     let marks = SeriesStyle::new("errors", entity_content::ERROR);
     rows.push(EntityUpdate::new(ERROR_MARKS, EntityData::Marks(marks, MarkShape::Cross)));
-    let sent = SeriesStyle::new("signals that were sent", entity_content::SIGNAL);
+    let sent = SeriesStyle::new("sent", entity_content::SIGNAL);
     rows.push(EntityUpdate::new(SENT_MARKS, EntityData::Marks(sent, MarkShape::Diamond)));
     rows.push(EntityUpdate::new(SIGNAL_PAGE, EntityData::Page(NO_SIGNAL.to_string())));
     rows
@@ -86,6 +91,13 @@ fn broken(text: &str) -> String {
     broken
 }
 
+/// The signal that was sent at a time, with its number: "signal 2: recipe of order 1, by the assistant; saves …".
+pub fn numbered(follower: &SessionFollower, sent: SessionTime) -> Option<String> {
+    let nth = follower.signals.shown.iter().rposition(|shown| shown.time == sent)?;
+    let words = signal_words::sent(follower, &follower.signals.shown[nth]).join("; ");
+    Some(format!("signal {}: {words}", nth + 1))
+}
+
 /// A line of the text log for a new entry of the timeline; presses that were judged errors are marked.
 pub fn entry(
     session: &Session,
@@ -114,8 +126,7 @@ pub fn entry(
             }
         }
         TimelineEvent::Noted(Event::SignalShown { by, .. }) => {
-            let record = follower.signals.shown.iter().rfind(|shown| shown.time == entry.time);
-            let told = record.map_or(text, |record| format!("signal: {}", signal_words::sent(follower, record)));
+            let told = numbered(follower, entry.time).unwrap_or(text);
             let entity = match by {
                 Sender::Wizard => "wizard/signals",
                 Sender::Assistant => "assistant/signals",
@@ -161,6 +172,11 @@ pub fn judged<'a>(stamped: &TimestampedEvent, judged: &'a [JudgedPress]) -> Opti
     let index = judged.binary_search_by_key(&stamped.seq, |press| press.seq).ok()?;
     let number = judged[..=index].iter().filter(|press| press.verdict.error).count();
     Some(JudgedPressShown { number, press: &judged[index] })
+}
+
+/// The line at the cost of communication, which is known before any advice.
+pub fn cost_line() -> EntityUpdate {
+    EntityUpdate::new(COST_LINE, EntityData::Value(0.0))
 }
 
 pub fn mark() -> EntityUpdate {
@@ -216,7 +232,7 @@ impl AdviceScene {
             drawn.iter().map(|option| EntityUpdate::new(benefit(&option.signal), EntityData::Value(option.net))),
         );
         self.valued = drawn.into_iter().map(|option| (option.signal.clone(), option.net)).collect();
-        rows.push(EntityUpdate::new(COST_LINE, EntityData::Value(0.0)));
+        rows.push(cost_line());
         if !told.is_empty() {
             let text = format!("assistant {told}");
             rows.push(say("assistant/advice", SceneLogLevel::Info, text, entity_content::SIGNAL));
@@ -248,7 +264,8 @@ impl SignalScene {
         let (told, was_over) = (self.told, self.is_over);
         while shown.get(self.told).and_then(|shown| shown.ended).is_some_and(|ended| ended <= session.time) {
             let signal = wording::signal(&shown[self.told].signal);
-            let text = format!("signal over, {signal}: {}", signal_words::outcome(follower, self.told));
+            let outcome = signal_words::outcome(follower, self.told);
+            let text = format!("signal {} over, {signal}: {outcome}", self.told + 1);
             rows.push(say("signals/over", SceneLogLevel::Info, text, entity_content::SIGNAL));
             self.told += 1;
         }
@@ -265,8 +282,10 @@ fn signal_page(follower: &SessionFollower, over: usize) -> String {
     let session = &follower.session;
     let told = |(nth, shown): (usize, &ShownSignalRecord)| {
         let at = moment_on_clock(session.trial_clock_at(shown.time));
-        let outcome = if nth < over { format!("\n- {}", signal_words::outcome(follower, nth)) } else { String::new() };
-        format!("**{}**, {at}: {}\n{outcome}\n\n", nth + 1, signal_words::sent(follower, shown))
+        let outcome = if nth < over { signal_words::outcome(follower, nth) } else { String::new() };
+        let became = [signal_words::judged(follower, nth), outcome].into_iter().filter(|part| !part.is_empty());
+        let became: String = became.map(|part| format!("- {part}\n")).collect();
+        format!("**{}**, {at}: {}\n\n{became}\n\n", nth + 1, signal_words::sent(follower, shown).join("; "))
     };
     match follower.signals.shown.as_slice() {
         [] => NO_SIGNAL.to_string(),

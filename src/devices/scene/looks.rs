@@ -123,9 +123,13 @@ impl LookScene {
 
     /// "order 1; before: nori 0.4 s, cutting board 0.3 s".
     pub fn words(&self, session: &Session) -> String {
-        match (self.at.words(session), self.past.is_empty()) {
-            (now, true) => now,
-            (now, false) => format!("{now}; before: {}", told(session, self.past.iter())),
+        let now = match self.at {
+            LookedAt::Nothing => "not known".to_string(),
+            at => at.words(session),
+        };
+        match self.past.is_empty() {
+            true => now,
+            false => format!("{now}; before: {}", told(session, self.past.iter())),
         }
     }
 }

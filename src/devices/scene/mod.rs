@@ -35,7 +35,7 @@ use tomcom_session::follower::SessionFollower;
 use tomcom_session::{Event, Session, TimestampedEvent, apply};
 
 /// Version of the scene's content and layout. A stream with another version is rebuilt from the log.
-pub const VERSION: u32 = 10;
+pub const VERSION: u32 = 11;
 
 /// A time on the trial's clock, in minutes, seconds and tenths. As on the console's clock, what is smaller is left out.
 pub fn moment_on_clock(time: SessionTime) -> String {
@@ -157,6 +157,7 @@ impl SessionScene {
                 rows.extend(self.advice.ended());
                 rows.extend(self.belief.ended());
             }
+            Event::TrialStarted => rows.push(happenings::cost_line()),
             Event::Advised(advice) => {
                 self.belief.advice = happenings::advised(session, advice);
                 rows.extend(self.advice.follow(advice, &self.belief.advice));

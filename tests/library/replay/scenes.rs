@@ -2,6 +2,7 @@
 
 use tomcom::run::seekable_replay::SeekableReplay;
 use tomcom_core::measures::sequences::FALSE_BELOW;
+use tomcom_core::measures::wizard_performance::SignalVerdict;
 use tomcom_devices::scene::{EntityData, EntityUpdate, SceneInputs, SceneUpdate, SessionScene, WIDE};
 use tomcom_session::history::error_reasons::ExplainedError;
 use tomcom_session::history::{signal_words, wording};
@@ -39,16 +40,21 @@ fn a_scene_shows_every_press_signal_and_sample_once_at_its_time() {
         };
         let mut is_running = false;
         let mut presses = [Vec::new(), Vec::new()];
-        let (mut gaze, mut signals, mut advice) = (Vec::new(), Vec::new(), Vec::new());
+        // The line of the cost of signals begins with the trial.
+        let (mut gaze, mut signals, mut cost) = (Vec::new(), Vec::new(), Vec::new());
         for stamped in &events {
             let place = (stamped.seq, stamped.time);
             match &stamped.event {
-                Event::TrialStarted | Event::TrialResumed => is_running = true,
+                Event::TrialStarted => {
+                    is_running = true;
+                    cost.push(place);
+                }
+                Event::TrialResumed => is_running = true,
                 Event::TrialPaused | Event::TrialEnded { .. } | Event::TrialAborted { .. } => is_running = false,
                 Event::Press { agent, .. } if is_running => presses[agent.index()].push(place),
                 Event::Gaze(_) => gaze.push(place),
                 Event::SignalShown { by: Sender::Wizard, .. } => signals.push(place),
-                Event::Advised(_) => advice.push(place),
+                Event::Advised(_) => cost.push(place),
                 _ => {}
             }
         }
@@ -56,7 +62,7 @@ fn a_scene_shows_every_press_signal_and_sample_once_at_its_time() {
         assert_eq!(steps_of("human/presses"), presses[Agent::Human.index()], "{name}");
         assert_eq!(steps_of("robot/presses"), presses[Agent::Robot.index()], "{name}");
         assert_eq!(steps_of("human/gaze"), gaze, "{name}");
-        assert_eq!(steps_of("assistant/benefit/cost_line"), advice, "{name}");
+        assert_eq!(steps_of("assistant/benefit/cost_line"), cost, "{name}");
         let sent = moments.iter().flat_map(|moment| &moment.rows).filter(|row| {
             row.entity == "wizard/signals"
                 && matches!(&row.shown, EntityData::Words { text, .. } if !text.starts_with("wizard: took"))
@@ -395,9 +401,14 @@ fn a_signal_has_its_reason_as_long_as_it_is_shown_and_then_what_became_of_it() {
     assert!(signals.len() > 2 && verdicts.len() == signals.len(), "{} signals", signals.len());
     let bars = texts(&moments, "signal");
     let pages = texts(&moments, "human/now");
-    for signal in signals {
+    for (number, signal) in (1..).zip(signals) {
         let (_, bar) = bars.iter().find(|(moment, _)| moment.time == signal.time).expect("a bar");
-        assert!(bar.contains("(probability ") && bar.contains(" after the cost of a signal"), "{bar}");
+        assert!(
+            bar.starts_with(&format!("signal {number}: "))
+                && bar.contains("(probability ")
+                && bar.contains(" after the cost of a signal"),
+            "{bar}"
+        );
         let ended = signal.ended.expect("the trial is over");
         let while_shown = pages.iter().filter(|(moment, _)| moment.time > signal.time && moment.time < ended);
         for (moment, page) in while_shown {
@@ -410,11 +421,17 @@ fn a_signal_has_its_reason_as_long_as_it_is_shown_and_then_what_became_of_it() {
     });
     let page = whole.next_back().expect("a page of the signals");
     for verdict in verdicts {
-        assert!(page.contains(&format!("judged {}", verdict.name())), "{verdict:?}: {page}");
+        let told = match verdict {
+            SignalVerdict::Hit { .. } => "- hit: yes\n".to_string(),
+            other => format!("- hit: no, {}\n", other.name()),
+        };
+        assert!(page.contains(&told), "{verdict:?}: {page}");
     }
     let looked: Vec<String> = signals
         .iter()
-        .filter_map(|signal| Some(format!("looked at after {:.1} s", signal.seen?.secs_since(signal.time))))
+        .filter_map(|signal| {
+            Some(format!("looked at after {}", wording::seconds(signal.seen?.secs_since(signal.time))))
+        })
         .collect();
     assert!(!looked.is_empty() && looked.iter().all(|looked| page.contains(looked)), "{looked:?}: {page}");
     // What a signal corrected was false when it came, also if the press before it at the same time made it so.
@@ -431,5 +448,9 @@ fn a_signal_has_its_reason_as_long_as_it_is_shown_and_then_what_became_of_it() {
     assert!(texts(&moments, "look").iter().any(|(_, text)| text.starts_with("storage: ")));
     assert!(pages.iter().any(|(_, page)| page.contains("; before: ")));
     assert!(pages.iter().any(|(_, page)| page.contains("**Robot**: on its way to ")));
+    // What there is none of is told, too.
+    let says = |words: &str| pages.iter().any(|(_, page)| page.contains(words));
+    assert!(says("**On the display**: no signal\n") && says("**Assistant**: no advice\n"));
+    assert!(pages.iter().all(|(_, page)| !page.contains("**: \n")));
     assert!(!moments.iter().flat_map(|moment| &moment.rows).any(|row| row.entity.starts_with("robot/arm")));
 }

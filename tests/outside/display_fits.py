@@ -56,6 +56,9 @@ MEASURE = """([states, DISTANCE_M, NEAR_EM]) => Object.entries(states).map(([nam
     if (holder && !inside(text, box(holder))) found.push(`"${said}" leaves its ${holder.className || holder.tagName}`);
     if (made.scrollWidth > made.clientWidth + SLACK && made.clientWidth) found.push(`"${said}" is cut off: ${made.scrollWidth} of ${made.clientWidth} px`);
   }
+  // What the card of a lesson would cut is hidden.
+  const lesson = document.querySelector(".sheet.open .lesson:not(.large)");
+  for (const text of texts) if (lesson && !lesson.contains(text.made) && !text.made.closest(".why, .toast, .zone") && meets(text, box(lesson))) found.push(`the card of a lesson cuts "${text.said}"`);
   const sheet = document.querySelector(".sheet.open"), card = sheet && sheet.querySelector(".card");
   // A card stands over the dimmed kitchen on purpose, except for the instruction, which explains it.
   const over = (made) => made.closest(".why, .toast") || (card && !sheet.classList.contains("instruction") && card.contains(made));
@@ -119,6 +122,7 @@ MEASURE = """([states, DISTANCE_M, NEAR_EM]) => Object.entries(states).map(([nam
     Stage.say("nothing");
     const said = document.querySelector(".why.says");
     if (!said || (meets(box(said), box(card)) && !inside(box(said), box(card)))) found.push("a line stands over the edge of the card, or is not there");
+    for (const text of texts) if (said && card.contains(text.made) && meets(box(said), text)) found.push(`a line about no place hides "${text.said}"`);
     Stage.say("");
   }
   const ruler = document.createElement("canvas").getContext("2d");

@@ -15,6 +15,7 @@ from page import Page
 
 PORT = 20341
 PAGE = Path("src/devices/display/page")
+LANGUAGES = Path("src/devices/sight/languages")
 KITCHENS = ("sushi", "burger")
 # Nothing moves while it is measured; what is shown for a moment only stays.
 STILL = "*, *::before, *::after { animation: none !important; transition: none !important; } .why.says, [data-robot=\"discards\"] .bin.takes { opacity: 1 !important; visibility: visible !important; }"
@@ -39,7 +40,7 @@ def longer(words):
 def long_language(folder, scene, kitchen):
     """A file with the page's words and the kitchen's names in that language; `scene` is the English one."""
     recipes = tomllib.loads(Path(f"recipes/{kitchen}.toml").read_text())
-    english = tomllib.loads(Path("src/devices/sight/languages/en.toml").read_text())
+    english = tomllib.loads((LANGUAGES / "en.toml").read_text())
     named = {place["name"].replace("_", " "): place["label"] for place in scene["locations"]}
     named |= {name: known["label"] for kind in ("items", "dishes") for name, known in scene[kind].items()}
     named |= {shelf["name"]: shelf["name"] for shelf in recipes["ingredient"]}
@@ -52,9 +53,12 @@ def long_language(folder, scene, kitchen):
 
 @contextmanager
 def opened(tomcom, browser, folder, kitchen, language, size=(1920, 1080), from_disk=False, settings=""):
-    """The page of a session that has not started. `from_disk`: with the page's files as they are now, not as they were built."""
+    """The page of a session that has not started. `from_disk`: with the page's files and words as they are now, not as they were built."""
     folder.mkdir(parents=True, exist_ok=True)
     session = folder / "session.toml"
+    words = LANGUAGES / f"{language}.toml"
+    if from_disk and words.exists():
+        language = words.resolve()
     layout = Path(f"layouts/{kitchen}.toml").resolve()
     session.write_text(f'layout = "{layout}"\n[participant]\nkind = "display"\ngaze = "none"\n[display]\nport = {PORT}\nlanguage = "{language}"\nserved = true\nclock = true\n{settings}')
     with Console(tomcom, [session, "--code", "P01", "--out", folder / f"recordings-{os.getpid()}"]) as console:
@@ -143,7 +147,7 @@ def probe_pages(scene, kitchen, dishes):
 
     `touched`: choices that are touched; where the page asks how sure the participant is, it does so then.
     """
-    english, words = (tomllib.loads(Path(f"src/devices/sight/languages/{language}.toml").read_text()) for language in ("en", scene["language"]))
+    english, words = (tomllib.loads((LANGUAGES / f"{language}.toml").read_text()) for language in ("en", scene["language"]))
     stretch = longer if scene["language"] == "en" and scene["words"]["back"] != english["page back"] else str
     said = lambda name, what="": stretch({**english, **words}[name]).replace("#", what)
     recipes = tomllib.loads(Path(f"recipes/{kitchen}.toml").read_text())

@@ -96,7 +96,7 @@ const Probe = (() => {
     all.setAttribute("role", "group");
     parts = { all, buttons: [], kit };
     // Its place is there in any case: what is touched stands where it stood before.
-    const late = text("p", probe.late ? "late" : "late none", words[probe.practise ? "tutorial late" : "probe late"]);
+    const late = text("p", probe.late ? "late" : "late none", probe.practise ? words["tutorial late"] : words["probe late"].replace("#", probe.closed ? probe.of : probe.question - 1));
     if (probe.late) late.setAttribute("role", "alert");
     if (probe.closed) {
       all.append(late, text("p", "goes-on", words["probe goes on"]), text("p", "seconds", ""));

@@ -46,6 +46,7 @@ const Questions = (() => {
     } else {
       card.append(text("p", "item done", question.text), text("p", "hint", words.review));
       const given = element("ol", question.given.length > 6 ? "given small" : "given");
+      given.style.setProperty("--rows", Math.ceil(question.given.length / 2));
       for (const { item, text: asked, answer, form, point } of question.given) {
         const line = element("li", ""), row = element("button", "");
         row.dataset.review = item;

@@ -6,7 +6,7 @@
 const Room = (scene, fontFamily) => {
   // Size of names, and smallest size of text that has to be read at 3 m: its capitals are 17 arc minutes high there on
   // a stage of 1.5 m. Then the height of a name above its place, and the smallest size of an action's button.
-  const NAME_SIZE = 0.0145, LEAST_SIZE = 0.0140, NAME = 0.034, PILL = [0.096, 0.05], GAP = 0.007;
+  const NAME_SIZE = 0.0145, LEAST_SIZE = 0.0140, NAME = 0.034, PILL = [0.096, 0.05], GAP = 0.016;
   // Width of the frame around an order with a signal, and the sizes that are tried for a button's words until they fit.
   const FRAME = 0.007, SIZES = [1, 0.92, 0.84, 0.76, 0.68];
   const ratio = scene.display_m[0] / scene.display_m[1];
@@ -168,12 +168,11 @@ const Room = (scene, fontFamily) => {
     return [left, order ? y : y + (h - high) / 2, wide, high];
   }
 
-  /** Where a page of the tutorial stands, always as large: where it hides nothing that it is about; if something is pressed over the robot's side, else rather over the person's. */
+  /** Where a page of the tutorial stands, over one whole side or all places: where it hides nothing that it is about; if something is pressed over the robot's side, else rather over the person's. */
   function forLesson(shows, page) {
-    const [robots, humans] = sides(), middle = table(), y = robots[1] + 0.05, w = robots[2], tags = scene.tags.map(({ area }) => area).filter((area) => area[1] > y);
-    const end = Math.min(robots[1] + robots[3], ...tags.map((area) => area[1] - 0.012)), mine = humans[0] + humans[2] - w, between = middle[0] + (middle[2] - w) / 2;
-    const lefts = page.presses ? [robots[0], mine, between] : [mine, between, robots[0]];
-    return Room.leastHidden(lefts.map((x) => [x, y, w, end - y]), Room.isAbout(scene, { robot: robots, human: humans, table: middle }, shows, page));
+    const [robots, humans] = sides(), middle = table(), y = robots[1] + 0.05, tags = scene.tags.map(({ area }) => area).filter((area) => area[1] > y);
+    const end = Math.min(robots[1] + robots[3], ...tags.map((area) => area[1] - 0.012));
+    return Room.leastHidden((page.presses ? [robots, humans, middle] : [humans, middle, robots]).map(([x, , w]) => [x, y, w, end - y]), Room.isAbout(scene, { robot: robots, human: humans, table: middle }, shows, page));
   }
 
   return {

@@ -81,7 +81,7 @@ const Stage = (() => {
   }
 
   function buildLocation(spot, index) {
-    const [, , w, h] = spot.area;
+    const [, y, w, h] = spot.area;
     const wide = (100 * w * scene.display_m[0]) / (h * scene.display_m[1]);
     const made = put(element("div", `spot ${spot.kind}`), spot.area);
     const shape = spot.kind === "place" ? spot.look && spot.look.shape : spot.kind;
@@ -89,7 +89,9 @@ const Stage = (() => {
       // A highlighted place is framed together with its name.
       const name = text("div", "name", spot.label), size = room.nameSize(spot);
       const over = Math.max(0, room.widthOf(spot.label, size) - w / room.em[0]) / 2;
-      made.style.setProperty("--side", `${(over + (room.isUpright ? 0.9 : 1.2)).toFixed(2)}em`);
+      made.style.setProperty("--side", `${(over + (room.isUpright ? 1.2 : 1.5)).toFixed(2)}em`);
+      made.style.setProperty("--over", room.isUpright ? "-2.7em" : "-2.6em");
+      made.style.setProperty("--under", `${-Math.min(0.7, (1 - y - h) / room.em[1] - 0.05).toFixed(2)}em`);
       name.style.fontSize = `${size.toFixed(3)}em`;
       // The robot's hand itself lies there, if it is drawn.
       const isDock = spot.kind === "robot_hand" && scene.arm !== "none";
@@ -447,9 +449,14 @@ const Stage = (() => {
     parts.toast.className = `toast ${isLost ? "open says-lost" : parts.toast.textContent ? "open" : ""}`;
   }
 
-  /** Says something that is about no place; nothing takes back what was said. */
+  // What is to be pressed or answered now, or what goes on.
+  const DOES = ".hinted, .scale, .slider, .options, .number, textarea, .choosing, .probing .choices, .lesson .choices, .lesson .next, .turns .confirm";
+
+  /** Says something that is about no place, near what can be done; nothing takes back what was said. */
   function say(name) {
-    if (shown && marks.acts) Reason.say(name ? scene.words[name] : "", root, { room, put, replay, text });
+    if (!shown || !marks.acts) return;
+    const does = [...root.querySelectorAll(DOES)].find((made) => made.checkVisibility({ visibilityProperty: true }));
+    Reason.say(name ? scene.words[name] : "", does, root, { room, put, replay, text });
   }
 
   /** What was pressed does nothing, or, where it is one of the kitchen's buttons, nothing yet. */

@@ -205,6 +205,13 @@ const Tutorial = (() => {
     lines.forEach((line, at) => { line.textContent = said[at]; });
   }
 
+  /** Hides what the card would cut, with its name and buttons; what is marked stays. */
+  function cover(card) {
+    const over = card.getBoundingClientRect();
+    const isCut = (made) => [made, ...made.children].map((part) => part.getBoundingClientRect()).some(({ left, right, top, bottom }) => left < over.right && over.left < right && top < over.bottom && over.top < bottom);
+    for (const made of document.querySelectorAll(".spot, .shelf, .pill")) made.classList.toggle("covered", !made.matches(".framed, .hinted, .highlight") && isCut(made));
+  }
+
   /** Whether the time of the recipe cards is over, so that the page has none. */
   const isTimeOver = ({ kind, cards }) => kind === "recipes" && !cards.length;
 
@@ -230,6 +237,7 @@ const Tutorial = (() => {
     fit(card, isLarge, page, kit);
     count(page, bar, words);
     point(page, partOf, isAsked);
+    cover(card);
     if (shownStep !== page.step) demonstrate(page, kit);
     shownStep = page.step;
     return undefined;

@@ -5,13 +5,16 @@
 
 const Upright = (wall, fontFamily, ratio) => {
   const WIDE = Upright.wideOf(ratio), BETWEEN = 0.8, EDGE = 0.8;
-  // Height of a name above its place; sizes of names and words; least and most height of what is touched; least height for recipes and texts.
-  const NAME = 1.9, WORDS = 1.45, TOUCH = [6.2, 12], TEXTS = 11.4;
-  // Size of what the robot has, as a share of what is touched, where its row is wide enough; room below what is touched, height of the title of the robot's side;
-  // room below what the robot has, where its hand stands, if that is drawn, as such a share, too.
-  const THEIRS = 0.7, INNER = 0.7, TITLE = 2.2, LANE = wall.arm === "none" ? 0 : 0.85;
-  // Width of a place, as a share of its height, of which a button leaves so much less; its least width; room beside it towards the middle, where the robot's hand stands.
-  const FLAT = 1.4, BUTTON = 8.6, PLACE = 9.6, ASIDE = 3.3;
+  // Height of a name above its place; sizes of names and words; least and most height of what is touched; height of orders, as a share of it;
+  // height for recipes and texts, and what they have more of it as such a share.
+  const NAME = 2.1, WORDS = 1.6, TOUCH = [5.8, 12], ORDER = 1.35, TEXTS = [2, 1.6];
+  // Room below what is touched, height of the title of the robot's side, and width of the robot's hand beside something.
+  const INNER = 0.9, TITLE = 2.2, HAND = 6.2;
+  // Width of a place, as a share of its height, of which names and buttons leave less; its least width; room beside it towards the middle, where the robot's hand stands;
+  // room beside the words of a button, between buttons, and between a button and a place or its name, around which a frame can go.
+  const FLAT = 1.4, PLACE = 9.6, ASIDE = 3.3, PAD = 1, APART = 0.5, FRAMED = 1.6;
+  // So much wider is a column of places with buttons than the middle of the screen, if the other has none.
+  const WIDER = 4;
   // Where keys are not shown, the buttons of several orders are told apart by their numbers.
   const served = wall.locations.flatMap(({ kind }, index) => (kind === "order" ? [index] : []));
   const numbered = (knob) => (knob.does === "serve" && served.length > 1 ? { ...knob, label: `${knob.label} ${served.indexOf(knob.at) + 1}` } : knob);
@@ -19,15 +22,18 @@ const Upright = (wall, fontFamily, ratio) => {
   const across = Room(scene, fontFamily), measure = across.widthOf;
   const of = (kind) => scene.locations.flatMap((spot, index) => (spot.kind === kind ? [index] : []));
   const places = of("place").sort((a, b) => scene.locations[a].area[1] - scene.locations[b].area[1] || scene.locations[a].area[0] - scene.locations[b].area[0]);
+  const wordsOf = ({ label }) => Math.max(...label.split(" ").map((word) => measure(word, WORDS)));
   const shelves = (agent) => scene.storages.flatMap((shelf, index) => (shelf.agent === agent ? [index] : []));
   const knobsAt = (index) => scene.buttons.filter((knob) => knob.at === index && ["process", "trash"].includes(knob.does));
   const chunks = (all, size) => Array.from({ length: Math.ceil(all.length / size) }, (_, row) => all.slice(row * size, (row + 1) * size));
   const rows = { places: chunks(places, 2), mine: chunks(shelves("human"), 5), theirs: chunks([...of("robot_hand").map((at) => ({ location: at })), ...shelves("robot").map((at) => ({ storage: at }))], 7) };
   // What is left of the height goes to what is touched and what the robot has, then to recipes and texts.
-  const touched = 2 + rows.places.length + rows.mine.length, named = touched - 1;
-  const fixed = 2 * EDGE + 3 * BETWEEN + named * (NAME + INNER) + 3 * INNER + TITLE + rows.theirs.length * (NAME + INNER) + TEXTS, shares = touched + (THEIRS + LANE) * rows.theirs.length;
-  const touch = Math.min(TOUCH[1], Math.max(TOUCH[0], (high - fixed) / shares)), small = Math.min(THEIRS * touch, (WIDE - 2 * EDGE) / Math.max(...rows.theirs.map((row) => row.length)) - 1.6);
-  const texts = TEXTS + Math.max(0, high - fixed - shares * touch), flat = FLAT * touch;
+  const named = 1 + rows.places.length + rows.mine.length, column = (WIDE - 2 * EDGE) / Math.max(...rows.theirs.map((row) => row.length));
+  // What the robot has is as large as what is touched, if its hand, where it is drawn, has room beside it; else smaller, with room for the hand below. As shares of what is touched.
+  const isBeside = wall.arm !== "none" && column - HAND >= TOUCH[0], [theirs, lane] = isBeside ? [1, 0] : [0.85, wall.arm === "none" ? 0 : 0.85];
+  const fixed = 2 * EDGE + 3 * BETWEEN + named * (NAME + INNER) + 3 * INNER + TITLE + rows.theirs.length * (NAME + INNER) + TEXTS[0], shares = ORDER + named + (theirs + lane) * rows.theirs.length + TEXTS[1];
+  const touch = Math.min(TOUCH[1], Math.max(TOUCH[0], (high - fixed) / shares)), small = Math.min(theirs * touch, column - (isBeside ? HAND : 1.6)), order = ORDER * touch;
+  const texts = TEXTS[0] + TEXTS[1] * touch + Math.max(0, high - fixed - shares * touch), flat = FLAT * touch;
 
   const areas = { locations: [], storages: [], knobs: new Map(), limits: new Map() };
   const rect = (x, y, w, h) => [x / WIDE, y / high, w / WIDE, h / high];
@@ -37,20 +43,20 @@ const Upright = (wall, fontFamily, ratio) => {
   function putOrders(top) {
     const orders = of("order");
     spread(orders.length, EDGE, WIDE - 2 * EDGE, BETWEEN).forEach(([x, wide], at) => {
-      const knob = scene.buttons.find(({ does, at: where }) => does === "serve" && where === orders[at]), pill = knob ? Math.min(9, wide / 3) : 0;
-      areas.locations[orders[at]] = rect(x, top, wide - pill - (knob ? 1 : 0), touch);
-      if (knob) areas.knobs.set(knob.name, rect(x + wide - pill, top, pill, touch));
+      const knob = scene.buttons.find(({ does, at: where }) => does === "serve" && where === orders[at]), pill = knob ? Math.min(10, wide / 2.5) : 0;
+      areas.locations[orders[at]] = rect(x, top, wide - pill - (knob ? 1 : 0), order);
+      if (knob) areas.knobs.set(knob.name, rect(x + wide - pill, top, pill, order));
     });
-    return top + touch;
+    return top + order;
   }
 
   function putTheirs(top) {
     let y = top + TITLE;
     for (const row of rows.theirs) {
-      // Each as wide as its name, where there is room; a hand's frame goes around its name, and needs more of it.
+      // Each as wide as its name, where there is room; a hand's frame goes around its name, and needs more of it. Where the hand stands beside them, all alike.
       const spots = row.map(({ location, storage }) => (storage === undefined ? scene.locations[location] : scene.storages[storage]));
       const air = row.map(({ storage }) => (storage === undefined ? 2.6 : 0.9)), total = (all) => all.reduce((sum, width) => sum + width, 0);
-      const wanted = (share) => spots.map(({ label }, at) => Math.max(small + 0.4, share * measure(label, WORDS) + air[at]));
+      const wanted = (share) => spots.map(({ label }, at) => (isBeside ? column : Math.max(small + 0.4, share * measure(label, WORDS) + air[at])));
       let share = 1;
       while (share > 0.5 && total(wanted(share)) > WIDE - 2 * EDGE) share -= 0.02;
       const widths = wanted(share), rest = (WIDE - 2 * EDGE - total(widths)) / row.length;
@@ -61,7 +67,7 @@ const Upright = (wall, fontFamily, ratio) => {
         areas.limits.set(area, wide - air[at]);
         x += wide;
       });
-      y += NAME + small + LANE * touch + INNER;
+      y += NAME + small + lane * touch + INNER;
     }
     return y;
   }
@@ -69,14 +75,20 @@ const Upright = (wall, fontFamily, ratio) => {
   /** Places in two columns, as on the wall: the buttons of a place stand beside it, away from the middle. */
   function putPlaces(top) {
     let y = top + INNER / 2;
-    const column = (WIDE - 2 * EDGE) / 2;
+    const withKnobs = [0, 1].map((at) => rows.places.map((row) => row[at]).filter((index) => index !== undefined && knobsAt(index).length));
+    const middle = WIDE / 2 + WIDER * (Math.sign(withKnobs[0].length) - Math.sign(withKnobs[1].length)), columns = [middle - EDGE, WIDE - EDGE - middle];
+    // What place, name and buttons of a column share, what its buttons need of that, and its longest name.
+    const room = columns.map((column) => column - 0.7 - ASIDE), most = (all) => Math.max(0, ...all);
+    const needs = withKnobs.map((all) => most(all.map((index) => knobsAt(index).reduce((sum, knob) => sum + Math.max(TOUCH[0], wordsOf(knob) + PAD) + APART, -APART)))), names = withKnobs.map((all) => most(all.map((index) => measure(scene.locations[index].label, WORDS))));
+    const wide = Math.max(PLACE, Math.min(flat, ...[0, 1].filter((at) => withKnobs[at].length).map((at) => [room[at] - needs[at] - FRAMED, names[at]]).flatMap(([left, named]) => [left, 2 * left - named])));
+    const gaps = [0, 1].map((at) => Math.max(FRAMED, Math.min(FRAMED + (names[at] - wide) / 2, room[at] - wide - needs[at])));
     for (const row of rows.places) {
       row.forEach((index, at) => {
-        const left = EDGE + at * column, knobs = knobsAt(index), wide = Math.max(PLACE, Math.min(flat, column - 5 - BUTTON * knobs.length)), aside = knobs.length ? ASIDE : (column - wide) / 2;
+        const left = at ? middle : EDGE, column = columns[at], knobs = knobsAt(index), aside = knobs.length ? ASIDE : (column - wide) / 2, gap = gaps[at];
         const x = at ? left + aside : left + column - aside - wide;
         areas.locations[index] = rect(x, y + NAME, wide, touch);
-        areas.limits.set(areas.locations[index], knobs.length ? wide + 2.8 : column - 1);
-        spread(knobs.length, at ? x + wide + 1.9 : left + 0.7, column - 0.7 - aside - wide - 1.9, 0.5).forEach(([from, width], one) => areas.knobs.set(knobs[one].name, rect(from, y + NAME, width, touch)));
+        areas.limits.set(areas.locations[index], knobs.length ? wide + 2 * (gap - FRAMED) : column - 1);
+        spread(knobs.length, at ? x + wide + gap : left + 0.7, room[at] - wide - gap, APART).forEach(([from, width], one) => areas.knobs.set(knobs[one].name, rect(from, y + NAME, width, touch)));
       });
       y += NAME + touch + INNER;
     }
@@ -125,7 +137,7 @@ const Upright = (wall, fontFamily, ratio) => {
   /** Where a button of an action stands, and how large its words are, of which each has a line of its own if need be. */
   function forPill({ name, label }) {
     const area = areas.knobs.get(name);
-    return { area, words: Math.min(1, (area[2] * WIDE - 1.2) / Math.max(...label.split(" ").map((word) => measure(word, 1.6)))) };
+    return { area, words: Math.min(1, (area[2] * WIDE - PAD) / wordsOf({ label })) };
   }
 
   /** Where a text of the tutorial stands: below the orders and over the robot's side; where nothing is pressed, rather over the person's side or over the places. */
@@ -137,7 +149,7 @@ const Upright = (wall, fontFamily, ratio) => {
   return {
     isUpright: true, placed, em: [1 / WIDE, 1 / high], nameSize, forPill, forLesson,
     widthOf: (said, size) => measure(said, size),
-    sides: () => [zones.theirs, zones.mine], table: () => zones.places, base: () => [0.5, zones.theirs[1] + zones.theirs[3]], taken: () => [rect(EDGE, top.mine, measure(scene.words.human, WORDS) + 1.6, TITLE)],
+    sides: () => [zones.theirs, zones.mine], table: () => zones.places, base: () => [isBeside ? areas.locations[of("robot_hand")[0]][0] : 0.5, zones.theirs[1] + zones.theirs[3]], taken: () => [rect(EDGE, top.mine, measure(scene.words.human, WORDS) + 1.6, TITLE)],
     forGoOn: () => rect(WIDE / 2 - 2, top.theirs + 0.1, WIDE / 2 + 0.8 - EDGE, TITLE + 0.2), forStatus: () => rect(WIDE - EDGE - 18, top.mine + 0.3, 17, NAME), forRecipe: () => free,
   };
 };

@@ -18,7 +18,7 @@ import tomllib
 from pathlib import Path
 
 from display_states import KITCHENS, long_language, opened, show, states
-from page import browser
+from page import browser, has_font
 
 # Height of capitals on a screen of the layout's width, seen from the distance for which the page is made.
 ARC_MINUTES, DISTANCE_M = 17, 3
@@ -221,6 +221,8 @@ def main():
                 with opened(arguments.tomcom, chromium, folder, kitchen, words, from_disk=arguments.from_disk) as page:
                     here = page.ask("Stage.scene()")
                     scene = scene or here
+                    if page.ask("document.querySelector('.readiness').textContent.includes(Stage.scene().words['ready font'])") == has_font(here["language"]):
+                        failed.setdefault(f"the readiness check is wrong about the font for {language}", []).append(kitchen)
                     for size in [SIZES[0], UPRIGHT[0]] if language in SUSHI_ALONE else SIZES + UPRIGHT:
                         page.page.set_viewport_size({"width": size[0], "height": size[1]})
                         page.page.wait_for_timeout(150)

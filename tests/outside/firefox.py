@@ -1,4 +1,4 @@
-"""The participant's page in Firefox: a first order by keys, in both kitchens, with pictures of it.
+"""The participant's page in Firefox: a first order by keys, in both kitchens, with pictures of it; and what the page says of a missing font.
 
     tests/outside/firefox.py TOMCOM FOLDER
 """
@@ -13,6 +13,7 @@ from PIL import Image
 
 import bidi
 from display import operate, presses_for, seed_of, session_file, url, verified
+from page import has_font
 
 SIZE = (1280, 800)
 
@@ -53,6 +54,19 @@ def serves_an_order(tomcom, folder, kitchen):
     print(f"Firefox {version}: {dish} served with {len(presses)} keys in the {kitchen} kitchen; the recording verifies", flush=True)
 
 
+def says_that_a_font_is_missing(tomcom, folder):
+    """The check before the trial says so, where this machine has no font for the page's language."""
+    session = session_file(folder, "sushi", 1)
+    session.write_text(session.read_text().replace("[display]\n", '[display]\nlanguage = "ja"\n'))
+    with operate(tomcom, session, folder) as console, bidi.Firefox(SIZE) as firefox:
+        firefox.open(url())
+        firefox.wait_for("document.querySelector('.readiness') !== null")
+        says = firefox.ask("document.querySelector('.readiness').textContent.includes(Stage.scene().words['ready font'])")
+        console.quit()
+    assert says != has_font("ja"), says
+    print(f"Firefox: the check before the trial {'says that there is no' if says else 'finds a'} font for Japanese", flush=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("tomcom")
@@ -62,6 +76,7 @@ def main():
         return print(f"Firefox: not looked at, since {bidi.PROGRAM} is not on this machine", flush=True)
     for kitchen in ("sushi", "burger"):
         serves_an_order(arguments.tomcom, arguments.folder / kitchen, kitchen)
+    says_that_a_font_is_missing(arguments.tomcom, arguments.folder / "font")
     return None
 
 

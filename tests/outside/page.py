@@ -3,6 +3,7 @@
 import json
 import re
 import shutil
+import subprocess
 import threading
 import time
 from contextlib import contextmanager
@@ -115,6 +116,11 @@ class Page:
     def close(self):
         assert not self.errors, self.errors
         self.context.close()
+
+
+def has_font(language):
+    """Whether this machine has a font for the language."""
+    return bool(subprocess.run(["fc-list", f":lang={language}"], capture_output=True, check=True).stdout)
 
 
 def plain(text):

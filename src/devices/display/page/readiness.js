@@ -15,19 +15,18 @@ const Readiness = (() => {
     return part;
   }
 
-  /** Whether letters of the page's words look alike, as they do where they are boxes: the system has no font for them. */
+  /** Whether letters of the page's words are as large as the boxes that stand for letters without a font. */
   function lacksFont() {
     const said = [...Object.values(words), ...scene.locations.map(({ label }) => label)].join("");
-    const letters = [...new Set(said.match(/\p{L}/gu))].filter((letter) => letter > "\u02ff"), pen = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
-    [pen.canvas.width, pen.canvas.height, pen.font, pen.textBaseline] = [32, 32, `24px ${getComputedStyle(document.body).fontFamily}`, "top"];
-    const picture = (letter) => {
-      pen.clearRect(0, 0, 32, 32);
-      pen.fillText(letter, 2, 2);
-      return pen.getImageData(0, 0, 32, 32).data.join("");
+    const letters = [...new Set(said.match(/\p{L}/gu))].filter((letter) => letter > "\u02ff"), pen = document.createElement("canvas").getContext("2d");
+    pen.font = `24px ${getComputedStyle(document.body).fontFamily}`;
+    const size = (letter) => {
+      const { width, actualBoundingBoxLeft: left, actualBoundingBoxRight: right, actualBoundingBoxAscent: top, actualBoundingBoxDescent: bottom } = pen.measureText(letter);
+      return [width, left, right, top, bottom].join();
     };
-    // A sign that no font has is drawn as the box that stands for it.
-    const box = picture("\u{10fffd}");
-    return letters.slice(0, 40).some((letter) => picture(letter) === box);
+    // Signs that no font has. A box may show the number of its sign: those of four digits are alike.
+    const boxes = ["\uffff", "\u{10fffd}"].map(size);
+    return letters.some((letter) => boxes.includes(size(letter)));
   }
 
   function draw() {

@@ -143,7 +143,7 @@ const Room = (scene, fontFamily) => {
    */
   function forRecipe(others, order, { most = [0.24, 0.5], isClear = false } = {}) {
     // A line is a picture with words beside it. A larger line height than `enough` does not improve reading, one of `least` is readable.
-    const margin = 0.012, lines = 4.4, line = 5.2, enough = 0.08, least = 0.06;
+    const margin = 0.015, lines = 4.4, line = 5.2, enough = 0.08, least = 0.06;
     const clear = isClear && forRecipe([...others, sides()[0]], order, { most });
     if (clear && Math.min(clear[3] / lines, (clear[2] * ratio) / line) >= least) return clear;
     const walls = others.map((rect) => grown(rect, [margin, margin * ratio, margin, margin * ratio]));

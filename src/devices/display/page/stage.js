@@ -314,11 +314,11 @@ const Stage = (() => {
     return { picture, label: does === "use" ? named(spot.label) : label };
   }
 
-  /** Makes the words smaller until no name is broken and none is higher than its line. */
-  function fitWords(made) {
+  /** Makes the words, or what else has such a size, smaller until no name is broken and none is higher than its line. */
+  function fitWords(made, what = "--words", largest = 1) {
     const fits = (said) => said.scrollWidth <= said.clientWidth && said.scrollHeight <= said.parentNode.clientHeight;
-    for (let size = 1; size > 0.5; size -= 0.05) {
-      made.style.setProperty("--words", size);
+    for (let size = largest; size > 0.5; size -= 0.05) {
+      made.style.setProperty(what, size);
       if ([...made.querySelectorAll("figcaption, .dish, h1, h2, p")].every(fits) && made.scrollHeight <= made.clientHeight) return;
     }
   }

@@ -3,6 +3,8 @@
 const Tutorial = (() => {
   // What a page with presses can say of them.
   const PRESSED = ["tutorial first press", "tutorial right", "tutorial again"], ASKED = ["tutorial first question", "tutorial other answer"], TICK_MS = 250;
+  // How much larger than usual recipe cards and their pictures may be where there is room, step by step.
+  const LARGEST = [["--pictures", 1.6], ["--cards", 1.3], ["--pictures", 2.2]];
   const PRACTISED = ["tutorial right", "tutorial probe wrong"];
   // A press of the robot: the way there, the press, and the rest after it; the hand is down at the end of its way.
   const WAY_MS = 1600, REST_MS = 700, DOWN_FROM = 0.8, FRAME_MS = 33;
@@ -198,6 +200,7 @@ const Tutorial = (() => {
     const lines = [...card.querySelectorAll(".verdict")], said = lines.map((line) => line.textContent), longest = longestOf(page, scene.words);
     longest.forEach((words, at) => { lines[at].textContent = words; });
     fitWords(isLarge ? card : put(card, area));
+    if (page.cards.length) for (const [what, largest] of LARGEST) fitWords(card, what, largest);
     longest.forEach((_, at) => {
       lines[at].classList.add("kept");
       lines[at].style.minHeight = `${lines[at].offsetHeight / parseFloat(getComputedStyle(lines[at]).fontSize)}em`;
@@ -222,7 +225,8 @@ const Tutorial = (() => {
     drawn = { sheet, page, kit };
     if (tries && page.probe) return practise(false);
     Probe.end();
-    const card = element("div", `card lesson ${isLarge ? "large" : ""}`), bar = element("div", "left", "<i></i><span></span>");
+    const card = element("div", `card lesson ${isLarge ? "large" : ""}`), bar = element("div", "left", "<i></i>");
+    bar.append(text("span", "", words.seconds.replace("#", page.seconds)));
     card.append(text("p", "count", `${page.number} / ${page.of}`), text("h2", "", page.title), text("p", "says", isTimeOver(page) ? words["tutorial recipes over"] : page.text));
     if (page.number === 1) card.append(text("p", "says how", words[navigator.maxTouchPoints ? "tutorial turn" : "tutorial turn keys"]));
     if (page.explains_buttons) card.append(text("p", "says how", howOf(words, badges)));

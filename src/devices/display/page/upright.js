@@ -32,7 +32,7 @@ const Upright = (wall, fontFamily, ratio) => {
   // What the robot has is as large as what is touched, if its hand, where it is drawn, has room beside it; else smaller, with room for the hand below. As shares of what is touched.
   const isBeside = wall.arm !== "none" && column - HAND >= TOUCH[0], [theirs, lane] = isBeside ? [1, 0] : [0.85, wall.arm === "none" ? 0 : 0.85];
   const fixed = 2 * EDGE + 3 * BETWEEN + named * (NAME + INNER) + 3 * INNER + TITLE + rows.theirs.length * (NAME + INNER) + TEXTS[0], shares = ORDER + named + (theirs + lane) * rows.theirs.length + TEXTS[1];
-  const touch = Math.min(TOUCH[1], Math.max(TOUCH[0], (high - fixed) / shares)), small = Math.min(theirs * touch, column - (isBeside ? HAND : 1.6)), order = ORDER * touch;
+  const touch = Math.min(TOUCH[1], Math.max(TOUCH[0], (high - fixed) / shares)), small = Math.min(theirs * touch, column - (isBeside ? HAND : 2.4)), order = ORDER * touch;
   const texts = TEXTS[0] + TEXTS[1] * touch + Math.max(0, high - fixed - shares * touch), flat = FLAT * touch;
 
   const areas = { locations: [], storages: [], knobs: new Map(), limits: new Map() };
@@ -53,9 +53,9 @@ const Upright = (wall, fontFamily, ratio) => {
   function putTheirs(top) {
     let y = top + TITLE;
     for (const row of rows.theirs) {
-      // Each as wide as its name, where there is room; a hand's frame goes around its name, and needs more of it. Where the hand stands beside them, all alike.
+      // Each as wide as its name, where there is room; the frame of a hand that is not drawn goes around its name, and needs more of it. Where the hand stands beside them, all alike.
       const spots = row.map(({ location, storage }) => (storage === undefined ? scene.locations[location] : scene.storages[storage]));
-      const air = row.map(({ storage }) => (storage === undefined ? 2.6 : 0.9)), total = (all) => all.reduce((sum, width) => sum + width, 0);
+      const air = row.map(({ storage }) => (storage === undefined && wall.arm === "none" ? 2.6 : 0.6)), total = (all) => all.reduce((sum, width) => sum + width, 0);
       const wanted = (share) => spots.map(({ label }, at) => (isBeside ? column : Math.max(small + 0.4, share * measure(label, WORDS) + air[at])));
       let share = 1;
       while (share > 0.5 && total(wanted(share)) > WIDE - 2 * EDGE) share -= 0.02;

@@ -17,7 +17,7 @@ const Reason = (() => {
   }
 
   // What is needed next: whatever is pressed, read or held. The line hides none of it, if there is room.
-  const NEEDED = ".pill, .spot .furniture, .dock, .shelf, .spot.order, .key, .recipe.open, .gripper, .tag, .flash, .sheet.open :is(button, p, h1, h2, textarea, .anchor, .slider, .number, .given, .choices, .left), .lesson:not(.large)";
+  const NEEDED = ".pill, .spot .furniture, .dock, .shelf, .spot.order, .key, .recipe.open, .gripper, .tag, .flash, .sheet.open :is(button, p, h1, h2, textarea, .anchor, .slider, .slider b, .number, .given, .choices, .left), .lesson:not(.large)";
   // What is better seen, too, but not at any distance.
   const NAMES = ".name, .zone h2, .status span";
   // Lengths in em. Size of words, height of a line and room around the words; air around what is needed, and beside what a tutorial marks with a frame;
@@ -31,7 +31,7 @@ const Reason = (() => {
   /** The areas of what is seen of these, in em from the stage's corner, with air around them. */
   function obstacles(names, stage, em, own) {
     const area = (made) => {
-      const box = made.getBoundingClientRect(), air = names === NEEDED ? (made.matches(".hinted") ? MARK : AIR) : 0;
+      const box = made.getBoundingClientRect(), air = made.matches(".card") ? 0 : made.matches(".hinted") ? MARK : AIR;
       return [(box.left - stage.left) / em - air, (box.top - stage.top) / em - air, (box.right - stage.left) / em + air, (box.bottom - stage.top) / em + air];
     };
     const isSeen = (made) => made.checkVisibility({ visibilityProperty: true, opacityProperty: true });

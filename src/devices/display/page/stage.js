@@ -90,8 +90,7 @@ const Stage = (() => {
       const name = text("div", "name", spot.label), size = room.nameSize(spot);
       const over = Math.max(0, room.widthOf(spot.label, size) - w / room.em[0]) / 2;
       made.style.setProperty("--side", `${(over + (room.isUpright ? 1.2 : 1.5)).toFixed(2)}em`);
-      made.style.setProperty("--over", room.isUpright ? "-2.7em" : "-2.6em");
-      made.style.setProperty("--under", `${-Math.min(0.7, (1 - y - h) / room.em[1] - 0.05).toFixed(2)}em`);
+      made.style.setProperty("--under", `${-Math.min(room.isUpright ? 0.55 : 0.7, (1 - y - h) / room.em[1] - 0.05).toFixed(2)}em`);
       name.style.fontSize = `${size.toFixed(3)}em`;
       // The robot's hand itself lies there, if it is drawn.
       const isDock = spot.kind === "robot_hand" && scene.arm !== "none";

@@ -58,7 +58,7 @@ MEASURE = """([states, DISTANCE_M, NEAR_EM]) => Object.entries(states).map(([nam
   }
   // What the card of a lesson would cut is hidden.
   const lesson = document.querySelector(".sheet.open .lesson:not(.large)");
-  for (const text of texts) if (lesson && !lesson.contains(text.made) && !text.made.closest(".why, .toast, .zone") && meets(text, box(lesson))) found.push(`the card of a lesson cuts "${text.said}"`);
+  for (const text of texts) if (lesson && !lesson.contains(text.made) && !text.made.closest(".why, .toast") && meets(text, box(lesson)) && !inside(text, box(lesson))) found.push(`the card of a lesson cuts "${text.said}"`);
   const sheet = document.querySelector(".sheet.open"), card = sheet && sheet.querySelector(".card");
   // A card stands over the dimmed kitchen on purpose, except for the instruction, which explains it.
   const over = (made) => made.closest(".why, .toast") || (card && !sheet.classList.contains("instruction") && card.contains(made));

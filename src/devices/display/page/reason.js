@@ -20,9 +20,9 @@ const Reason = (() => {
   const NEEDED = ".pill, .spot .furniture, .dock, .shelf, .spot.order, .key, .recipe.open, .gripper, .tag, .flash, .sheet.open :is(button, p, h1, h2, textarea, .anchor, .slider, .slider b, .number, .given, .choices, .left), .lesson:not(.large)";
   // What is better seen, too, but not at any distance.
   const NAMES = ".name, .zone h2, .status span";
-  // Lengths in em. Size of words, height of a line and room around the words; air around what is needed, and beside what a tutorial marks with a frame;
+  // Lengths in em. Size of words, height of a line and room around the words; air around what is needed, also for a line about no place, and beside what a tutorial marks with a frame;
   // how far the line is moved in one try.
-  const WORDS = 1.6, LINE = 1.8, PAD = [2.4, 0.5], AIR = 0.3, MARK = 0.6, STEP = 0.9;
+  const WORDS = 1.6, LINE = 1.8, PAD = [2.4, 0.5], AIR = 0.1, CLEAR = 0.3, MARK = 0.6, STEP = 0.9;
   // How far away, in em, the line would rather stand than hide a square em of something, or of a name, or stand over a card's edge, or have another line.
   const HIDES = 60, HIDES_NAME = 0.6, OVER = 5000, BROKEN = 0.1;
   // So small words can still be read on a screen in the hand, which alone is narrower than a line.
@@ -31,7 +31,7 @@ const Reason = (() => {
   /** The areas of what is seen of these, in em from the stage's corner, with air around them. */
   function obstacles(names, stage, em, own) {
     const area = (made) => {
-      const box = made.getBoundingClientRect(), air = made.matches(".card") ? 0 : made.matches(".hinted") ? MARK : AIR;
+      const box = made.getBoundingClientRect(), air = names === NEEDED ? (made.matches(".hinted") ? MARK : own ? AIR : CLEAR) : 0;
       return [(box.left - stage.left) / em - air, (box.top - stage.top) / em - air, (box.right - stage.left) / em + air, (box.bottom - stage.top) / em + air];
     };
     const isSeen = (made) => made.checkVisibility({ visibilityProperty: true, opacityProperty: true });
@@ -41,7 +41,7 @@ const Reason = (() => {
 
   /** The shapes that words can have, in one line to three: their size, the number of lines, and the size of words, which are smaller rather than broken. */
   function shapesOf(said, measure, most) {
-    const words = said.split(" ").map((word) => measure(word)), space = measure(" "), natural = measure(said);
+    const words = said.split(/ |(?<=、)/).map((word) => measure(word)), space = measure(" "), natural = measure(said);
     const linesIn = (wide) => words.reduce(([lines, used], word) => (used + space + word <= wide ? [lines, used + space + word] : [lines + 1, word]), [0, Infinity])[0];
     const shape = (lines) => {
       let wide = Math.max(...words);
@@ -59,11 +59,12 @@ const Reason = (() => {
     const crosses = ([al, at, ar, ab], x, y, w, h) => al < x + w && x < ar && at < y + h && y < ab && (x < al || x + w > ar || y < at || y + h > ab);
     let best = null, least = Infinity;
     for (const { lines, small, size: [w, h] } of shapes) {
-      const [lowX, highX, lowY, highY] = [0.6, width - 0.6 - w, 0.4, height - 0.4 - h];
+      const [lowX, highX, lowY, highY] = [0.6, width - 0.6 - w, 0.2, height - 0.2 - h];
       // From where it stands close beside, above or below, to all sides.
       const across = [(l + r - w) / 2, l, r - w, l - w - AIR, r + AIR], down = [(t + b - h) / 2, t, b - h, t - h - AIR, b + AIR];
       for (let x = lowX; x <= highX; x += STEP) across.push(x);
       for (let y = lowY; y <= highY; y += STEP) down.push(y);
+      down.push(highY);
       for (const y of down.filter((one) => one >= lowY && one <= highY)) for (const x of across.map((one) => Math.min(highX, Math.max(lowX, one)))) {
         const away = Math.hypot(Math.max(0, l - x - w, x - r), Math.max(0, t - y - h, y - b));
         // Of two that are as near, the one whose middle is nearer.

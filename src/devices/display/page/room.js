@@ -109,7 +109,7 @@ const Room = (scene, fontFamily) => {
     for (let step = 1; step < 6; step += 1) {
       for (const left of [middle, x + w + GAP, x - GAP - pw]) tries.push([inside(left), y + h + GAP + step * (ph + GAP)]);
     }
-    const air = GAP / 2, fits = (rect) => rect[0] >= 0 && rect[1] >= 0 && rect[0] + pw <= 1 && rect[1] + ph <= 1 && !others.some((other) => overlaps(grown(rect, [air, air, air, air]), other));
+    const air = 0.0035, fits = (rect) => rect[0] >= 0 && rect[1] >= 0 && rect[0] + pw <= 1 && rect[1] + ph <= 1 && !others.some((other) => overlaps(grown(rect, [air, air, air, air]), other));
     return tries.map(([left, top]) => [left, top, pw, ph]).find(fits);
   }
 
@@ -143,7 +143,7 @@ const Room = (scene, fontFamily) => {
    */
   function forRecipe(others, order, { most = [0.24, 0.5], isClear = false } = {}) {
     // A line is a picture with words beside it. A larger line height than `enough` does not improve reading, one of `least` is readable.
-    const margin = 0.015, lines = 4.4, line = 5.2, enough = 0.08, least = 0.06;
+    const margin = 0.012, lines = 4.4, line = 5.2, enough = 0.08, least = 0.06;
     const clear = isClear && forRecipe([...others, sides()[0]], order, { most });
     if (clear && Math.min(clear[3] / lines, (clear[2] * ratio) / line) >= least) return clear;
     const walls = others.map((rect) => grown(rect, [margin, margin * ratio, margin, margin * ratio]));

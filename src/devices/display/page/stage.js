@@ -332,7 +332,7 @@ const Stage = (() => {
     root.dataset.robot = does;
     parts.robots.querySelector("h2").textContent = scene.words[does ? `robot ${does.replace("_", " ")}` : "robot"];
     parts.goOn.replaceChildren(text("p", "", does === "stopped" ? scene.words["robot go on"] : ""));
-    [parts.robots, parts.goOn].forEach(fitWords);
+    [parts.robots, parts.goOn].forEach((made) => fitWords(made));
   }
 
   /** Says what the robot has just done, else what it does if it does not simply work; each for a while, but a stop at once. */

@@ -100,13 +100,9 @@ impl ForeignReason {
 
 pub fn foreign_in_words(foreign: &[ForeignRecording]) -> Option<String> {
     let group = |group: &[ForeignRecording]| {
-        let named: Vec<&str> = group.iter().take(NAMED).map(|one| one.recording.as_str()).collect();
-        let more = match group.len().saturating_sub(NAMED) {
-            0 => String::new(),
-            more => format!(", and {more} more"),
-        };
+        let names: Vec<&str> = group.iter().map(|one| one.recording.as_str()).collect();
         let are = count(group.len() as u64, "recording is", "recordings are");
-        format!("{are} {}, and left out: {}{more}", group[0].reason.words(), named.join(", "))
+        format!("{are} {}, and left out: {}", group[0].reason.words(), named(&names))
     };
     let groups: Vec<String> = foreign.chunk_by(|a, b| a.reason == b.reason).map(group).collect();
     (!groups.is_empty()).then(|| groups.join("; "))
@@ -166,6 +162,16 @@ pub(crate) fn differing_copy(first: &str) -> (String, String) {
 }
 
 const NAMED: usize = 8;
+
+/// The first names, and how many more there are.
+pub(crate) fn named<Name: AsRef<str>>(names: &[Name]) -> String {
+    let first: Vec<&str> = names.iter().take(NAMED).map(AsRef::as_ref).collect();
+    let more = match names.len().saturating_sub(NAMED) {
+        0 => String::new(),
+        more => format!(", and {more} more"),
+    };
+    first.join(", ") + &more
+}
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct MissingTrials {

@@ -165,6 +165,19 @@ fn what_is_none_of_the_study_is_left_out_and_named() {
         assert!(bids_export::describe(&told).contains(words));
         fs::remove_dir_all(root.join("bids")).expect("removed");
     }
+    // Without the one trial that counts there is no study, and a report would be empty.
+    record(&out.join("P01-practice"), &log, |header| {
+        person("P01")(header);
+        header["session"]["step"].as_object_mut().expect("a step").remove("period");
+    });
+    rule(&out.join("P01-1"), true, "lights went out").expect("excluded");
+    let found = NamedRecordings::find(&request.paths, &[]).expect("recordings");
+    let request = AnalysisRequest { out: root.join("nothing"), ..request };
+    let told = pass::study(&request, &found, || ()).expect_err("nothing counts").to_string();
+    let words = "no trial that counts: 1 recording of practice; left out: P01-1 (excluded: lights went out); 1 recording is of \
+                 no plan, beside those of a plan, and left out: tried; 1 recording is of a simulated participant, beside";
+    assert!(told.contains(words), "{told}");
+    assert!(!request.out.exists(), "no report");
 }
 
 #[test]

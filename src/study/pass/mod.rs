@@ -26,7 +26,7 @@ use crate::gathered::{GatheredPlace, GatheredRecordings, name};
 use crate::kept_cost::KeptCost;
 use crate::pass::reading::{AnalysisScope, RecordedConsent, WaivedPractice};
 pub use crate::pass::tell::{describe, describe_arms};
-use crate::planned_trial::{ForeignRecording, RecordingCopy, missing_trials};
+use crate::planned_trial::{ForeignRecording, RecordingCopy, foreign_in_words, missing_trials, named};
 use crate::study_part::AnalysedRecording;
 use crate::tables::communications::concepts;
 use crate::tables::participants::{
@@ -169,7 +169,7 @@ pub fn study(
     let raters = recordings.raters(analysis)?;
     let frozen = frozen(analysis)?;
     let export = AnalysisFolder::create(&analysis.out)?;
-    let Some((first, _)) = recordings.found.first() else { return Err(no_recording(analysis)) };
+    let Some((first, _)) = recordings.found.first() else { return Err(nothing_counts(analysis, 0, &[], &[])) };
     let kitchen = LogReader::open(first)?.kitchen;
     let numbered: Vec<(usize, &(PathBuf, String))> = recordings.found.iter().enumerate().collect();
     let work = |kept: &mut KeptCost, &(index, recording): &(usize, &(PathBuf, String))| {
@@ -179,7 +179,7 @@ pub fn study(
     parallel::each_with(&numbered, KeptCost::default, work, done).into_iter().collect::<Result<(), StudyError>>()?;
     let left = (recordings.copies.clone(), recordings.foreign.clone());
     let frozen = frozen.map(|frozen| Ok::<_, FileError>((frozen, recordings.versions()?))).transpose()?;
-    conclude(numbered.len(), &export, analysis.extent, frozen, left)
+    conclude(numbered.len(), analysis, (&export, analysis.extent), frozen, left)
 }
 
 /// The frozen plan with which the recordings are compared, with its digest; `None` if the user names no frozen plan.
@@ -262,11 +262,12 @@ impl CollectedRecordings {
     }
 }
 
-/// `number`: the recordings are kept under the numbers below it; `copies` and `foreign` ones were left out of them.
+/// `number`: the recordings are kept under the numbers below it; `copies` and `foreign` ones were left out of them. Errors:
+/// no trial counts; or the results cannot be written.
 fn conclude(
     number: usize,
-    export: &AnalysisFolder,
-    extent: AnalysisScope,
+    analysis: &AnalysisRequest,
+    (export, extent): (&AnalysisFolder, AnalysisScope),
     frozen: Option<((String, FrozenPlan), PlanVersions)>,
     (copies, foreign): (Vec<RecordingCopy>, Vec<ForeignRecording>),
 ) -> Result<(StudySummary, PathBuf), StudyError> {
@@ -283,6 +284,9 @@ fn conclude(
     arrange(&mut trials);
     waived.sort();
     let practice = (plans.len() - trials.len()) as u64;
+    if !trials.iter().any(TrialStatistics::counts) {
+        return Err(nothing_counts(analysis, practice, &trials, &foreign));
+    }
     consents.sort_by(|(one, a), (other, b)| (&a.started, one).cmp(&(&b.started, other)));
     let consents: Vec<RecordedConsent> = consents.into_iter().map(|(_, consent)| consent).collect();
     corrections.sort_by(|a, b| a.recording.cmp(&b.recording));
@@ -341,8 +345,21 @@ fn same_kitchen(first: (&Path, &Arc<Kitchen>), other: (&Path, &Arc<Kitchen>)) ->
     one.admit(other.0, other.1)
 }
 
-fn no_recording(analysis: &AnalysisRequest) -> StudyError {
+/// None of these recordings is a trial that counts: practice, trials that are left out, and foreign ones.
+fn nothing_counts(
+    analysis: &AnalysisRequest,
+    practice: u64,
+    trials: &[TrialStatistics],
+    foreign: &[ForeignRecording],
+) -> StudyError {
+    let practice = (practice > 0).then(|| format!("{} of practice", count(practice, "recording", "recordings")));
+    let left_out = trials.iter().filter_map(|one| Some(format!("{} ({})", one.recording, one.left_out.as_ref()?)));
+    let left_out: Vec<String> = left_out.collect();
+    let trials = (!left_out.is_empty()).then(|| format!("left out: {}", named(&left_out)));
+    let there: Vec<String> = [practice, trials, foreign_in_words(foreign)].into_iter().flatten().collect();
+    let found = format!("no trial that counts{}{}", if there.is_empty() { "" } else { ": " }, there.join("; "));
     let path = analysis.paths.first().map_or(Path::new("."), PathBuf::as_path);
-    let remedy = "at least one recording".to_string();
-    StudyError::from(FileError::from_finding(path, "no recording".to_string(), remedy))
+    let remedy = "at least one recording of a trial that is over and not excluded; tomcom list shows what became of each, \
+                  tomcom operate --continue RECORDING goes on with one, and tomcom exclude RECORDING --back includes one again";
+    FileError::from_finding(path, found, remedy.to_string()).into()
 }

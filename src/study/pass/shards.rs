@@ -16,7 +16,7 @@ use crate::frozen_plan::{PlanVersions, RecordedPlan};
 use crate::kept_cost::KeptCost;
 use crate::parallel::{self, WorkerPool};
 use crate::pass::reading::AnalysisScope;
-use crate::pass::{AnalysisRequest, NamedRecordings, StudyError, analyse, conclude, frozen, keep, no_recording};
+use crate::pass::{AnalysisRequest, NamedRecordings, StudyError, analyse, conclude, frozen, keep};
 use crate::planned_trial::{ForeignRecording, PlannedTrialKey, RecordingCopy, differing_copy, mixed_kinds};
 use crate::study_part::{
     AnalysedRecording, PART_FORMAT, PartAnalysisOptions, PartHeader, PartShared, check_parts, trial_index,
@@ -110,7 +110,7 @@ pub fn analyse_shard(
 
 /// Joins the parts of a study, the files `analysis.paths`: the results are those of one analysis of all recordings, to
 /// the last byte. Returns the summary and the path of the report. Errors: a file is no part of a study; the parts do
-/// not make one study; a recording is in two parts, or in none although a part saw it; there is no recording at all; or
+/// not make one study; a recording is in two parts, or in none although a part saw it; no trial counts; or
 /// the results cannot be written.
 pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), StudyError> {
     let frozen = frozen(analysis)?;
@@ -151,15 +151,12 @@ pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), Study
                       made before a recording was deleted are made anew";
         return Err(FileError::from_finding(part.path(), found, remedy.to_string()).into());
     }
-    if number == 0 {
-        return Err(no_recording(analysis));
-    }
     // A shard alone may be without codes of a rater.
     if let Some(named) = &headers[0].analysis.raters {
         rater_codes::check_named(Path::new("--raters"), named, &raters)?;
     }
     let left = (copies.into_iter().collect(), foreign.into_iter().collect());
-    conclude(number, &export, extent, frozen.map(|frozen| (frozen, versions)), left)
+    conclude(number, analysis, (&export, extent), frozen.map(|frozen| (frozen, versions)), left)
 }
 
 /// The recordings of a study's parts. Parts of different folders can have copies, or the same trial.

@@ -31,7 +31,7 @@ pub struct StudyProgress {
     pub finished: usize,
     /// Number of simulated recordings of the plan, which fill none of it.
     pub simulated: u64,
-    /// What the plan leaves out without being wrong, in words.
+    /// What the plan leaves out without being wrong, and which recordings do not count, in words.
     pub remarks: Vec<String>,
     /// Progress of each participant.
     pub participants: Vec<ParticipantProgress>,
@@ -55,7 +55,7 @@ impl StudyProgress {
             planned: participants.len(),
             finished: participants.iter().filter(|one| one.done() == one.steps.len()).count(),
             simulated,
-            remarks: remarks(study),
+            remarks: remarks(study).into_iter().chain(uncounted(made.len(), simulated, out)).collect(),
             participants,
         })
     }
@@ -67,6 +67,24 @@ fn remarks(study: &Study) -> Vec<String> {
     let consent = (language != "en")
         .then(|| format!("the consent's text stands in the plan: make sure that it is in \"{language}\""));
     study.remarks().into_iter().chain(consent).collect()
+}
+
+/// Why recordings that somebody made may not show in the progress.
+fn uncounted(counted: usize, simulated: u64, out: &Path) -> Option<String> {
+    let out = out.display();
+    match (counted, simulated) {
+        (0, 0) => Some(format!("no recording of the plan is in {out}; --out DIR looks in another folder")),
+        (_, 0) => None,
+        (_, some) => Some(format!(
+            "not counted: {}, since tomcom simulate fills no plan; {}",
+            count(some, "recording of a simulated participant", "recordings of simulated participants"),
+            match counted {
+                0 =>
+                    format!("tomcom study {out} analyses them, tomcom operate SESSION --code CODE records for the plan"),
+                _ => "move them to a folder of their own".to_string(),
+            }
+        )),
+    }
 }
 
 /// Result of freezing (preregistering) a study plan: the output of `tomcom plan SESSION --freeze FILE`.
@@ -189,13 +207,9 @@ pub fn describe(figures: &StudyProgress) -> String {
         let line = format!("{:width$}  {}  {}  {stands}\n", progress.code, progress.group, order.join(", "));
         line + &attempts(progress)
     };
-    let simulated = match figures.simulated {
-        0 => String::new(),
-        all => format!("not counted: {} of the plan\n", count(all, "simulated recording", "simulated recordings")),
-    };
     let remarks: String = figures.remarks.iter().map(|remark| format!("{remark}\n")).collect();
     let head = head + &unbalanced(figures) + &remarks;
-    head + &figures.participants.iter().map(one).collect::<String>() + &simulated
+    head + &figures.participants.iter().map(one).collect::<String>()
 }
 
 /// Remark on a number of participants with whom the orders of the conditions do not come equally often.

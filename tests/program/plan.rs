@@ -57,7 +57,12 @@ fn simulated_participants_have_both_trials_of_the_plan() {
         "simulated trials fill no plan"
     );
     let told = done(&["plan", "sessions/study.toml", "--out", out_name]);
-    assert!(told.ends_with("not counted: 3 simulated recordings of the plan\n"), "{told}");
+    let words =
+        "\nnot counted: 3 recordings of simulated participants, since tomcom simulate fills no plan; tomcom study ";
+    assert!(told.contains(&format!("{words}{out_name} analyses them")), "{told}");
+    let nowhere = format!("{out_name}/none-yet");
+    let told = done(&["plan", "sessions/study.toml", "--out", &nowhere]);
+    assert!(told.contains(&format!("no recording of the plan is in {nowhere}; --out")), "{told}");
     refused(&["simulate", "sessions/study.toml", "--trials", "29", "--out", out_name], "--trials 29");
 }
 

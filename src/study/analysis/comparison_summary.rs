@@ -1,5 +1,7 @@
 //! Comparison of wizard and assistants over recordings: how far they agree, and where they differ.
 
+use std::collections::BTreeSet;
+
 use serde::Serialize;
 
 use crate::analysis::lesson_report::WizardTrainingSummary;
@@ -18,6 +20,7 @@ use tomcom_session::history::belief_track::AspectBeliefSnapshot;
 use tomcom_session::history::comparison::{Communication, SenderComparison, UnmatchedCommunication};
 use tomcom_session::history::wording;
 use tomcom_session::settings::Condition;
+use tomcom_session::study_arm::StudyArm;
 use tomcom_session::watcher::{SenderComparisonFollower, SenderComparisonSettings};
 use tomcom_session::wizard_log::{self, WizardSummary};
 use tomcom_session::{Session, TimestampedEvent};
@@ -47,6 +50,7 @@ pub struct SenderPairSummary {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RecordingComparison {
     pub recording: String,
+    pub arm: StudyArm,
     #[serde(flatten)]
     pub standing: ExclusionStatus,
     pub human_actions: u64,
@@ -162,6 +166,7 @@ impl RecordingComparison {
         let differences = comparison.differences.iter().enumerate();
         RecordingComparison {
             recording: watched.recording.clone(),
+            arm: watched.follower.follower.session.study_arm(),
             standing: watched.standing.clone(),
             human_actions: u64::from(watched.follower.presses()),
             lanes: lanes.collect(),
@@ -232,6 +237,14 @@ pub fn describe(figures: &ComparisonSummary, request: &SenderComparisonSettings)
     );
     figures.pairs.iter().for_each(|pair| text += &describe_pair(pair));
     text += &figures.training.as_ref().map_or(String::new(), WizardTrainingSummary::describe);
+    let arms: BTreeSet<StudyArm> = figures.recordings.iter().map(|one| one.arm).collect();
+    if arms.len() > 1 {
+        let arms: Vec<&str> = arms.into_iter().map(StudyArm::title).collect();
+        text += &format!(
+            "signals alone: how errors differ between the conditions ({}) tells tomcom study RECORDING...\n",
+            arms.join(", ")
+        );
+    }
     for one in &figures.recordings {
         let presses = count(one.human_actions, "press", "presses");
         text += &format!("\n{}: {presses} of the human\n", one.recording);

@@ -97,6 +97,12 @@ fn compare_sets_assistants_beside_what_was_sent_and_opens_what_differs() {
     assert!(complaint(&["compare", session, "--open", "1"]).contains("--open, with a session file"));
     assert!(complaint(&["compare", session, "--only", "tom"]).contains("--only, with a session file"));
     assert!(complaint(&["compare", "tests/golden"]).contains("a folder without recordings"));
+    // What conditions do to errors is another question.
+    let told = |with: &str| String::from_utf8_lossy(&check(&["compare", recordings[0], with], 0).stdout).into_owned();
+    let study = "how errors differ between the conditions (unassisted, ToM) tells tomcom study RECORDING";
+    assert!(!told(recordings[1]).contains("tomcom study"));
+    check(&["simulate", session, "--trials", "1", "--condition", "none", "--out", &format!("{out}/alone")], 0);
+    assert!(told(&format!("{out}/alone")).contains(study));
     let swept = figures(&["compare", recordings[0], "--sweep", "--format", "json"], 0);
     let swept: Vec<u64> =
         swept["pairs"].as_array().expect("pairs").iter().filter_map(|pair| pair["window_actions"].as_u64()).collect();

@@ -8,9 +8,9 @@ use clap::Args;
 
 use super::failure::Failure;
 use super::output::{OutputFormat, print, progress, put_aside};
-use crate::run::near_path;
 use crate::run::recording_list::{self, RecordingListDetail};
 use tomcom_core::base::text::{count, did_you_mean};
+use tomcom_session::files::near_path;
 use tomcom_session::log::{LOG_NAME, LogReader};
 use tomcom_study::files::recordings;
 use tomcom_study::gathered::GatheredRecordings;

@@ -23,7 +23,6 @@ pub mod leaving;
 pub mod list_cache;
 pub mod live;
 mod mind_link;
-pub mod near_path;
 #[cfg(feature = "rerun")]
 pub mod open_viewer;
 mod operator_station;

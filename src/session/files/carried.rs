@@ -5,6 +5,7 @@ use std::io;
 use std::path::{Component, Path, PathBuf};
 
 use crate::files::file_error::{FileError, FileResult, read_regular};
+use tomcom_core::base::text::nearest as nearest_name;
 
 macro_rules! carried {
     ($($path:literal)*) => {
@@ -56,6 +57,15 @@ pub fn has(path: &Path) -> bool {
 /// missing there is an error.
 pub fn instead_of(path: &Path) -> Option<&'static str> {
     text(path).filter(|_| !path.exists() && !Path::new(KITCHENS).exists())
+}
+
+/// The carried path that is nearest to a mistyped one; `None` in a lab's folder.
+pub(super) fn nearest(path: &Path) -> Option<PathBuf> {
+    if has(path) || Path::new(KITCHENS).exists() {
+        return None;
+    }
+    let names = FILES.iter().map(|(name, _)| *name);
+    nearest_name(&path.to_string_lossy(), names).map(PathBuf::from)
 }
 
 /// Refuses a file that would be read from what the program carries: who runs a session with a person and names its file

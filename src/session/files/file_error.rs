@@ -10,7 +10,7 @@ use miette::{Diagnostic, NamedSource, SourceSpan};
 use toml::de::{DeTable, DeValue};
 
 use crate::features::{Feature, MissingFeature};
-use crate::files::carried;
+use crate::files::{carried, near_path};
 use tomcom_core::base::text::{printable, printable_lines};
 
 pub type FileResult<T> = Result<T, FileError>;
@@ -26,7 +26,7 @@ enum FileFault {
     #[error("{}: cannot be read: {reason}", path.display())]
     Unreadable {
         path: PathBuf,
-        reason: io::Error,
+        reason: String,
         #[help]
         remedy: String,
     },
@@ -119,6 +119,7 @@ impl FileError {
     }
 
     pub fn unreadable(path: &Path, reason: io::Error, remedy: &str) -> FileError {
+        let reason = format!("{reason}{}", near_path::did_you_mean(path, Path::new("")));
         FileFault::Unreadable { path: path.to_path_buf(), reason, remedy: remedy.to_string() }.into()
     }
 
@@ -142,7 +143,9 @@ pub fn missing(
     remedy: &str,
 ) -> FileError {
     let key = path.rsplit('.').next().unwrap_or(path);
-    let found = format!("{key} = \"{file}\", which cannot be read: {reason}");
+    let folder = session.parent().unwrap_or(Path::new("."));
+    let near = near_path::did_you_mean(&folder.join(file), folder);
+    let found = format!("{key} = \"{file}\", which cannot be read: {reason}{near}");
     FileError::at(session, text, place_of(text, path, nth), found, remedy.to_string())
 }
 

@@ -3,6 +3,7 @@
 
 pub mod carried;
 pub mod file_error;
+pub mod near_path;
 pub mod overwrite;
 pub mod parse;
 pub mod replace_file;
@@ -201,7 +202,8 @@ pub fn read_kitchen(layout_path: &Path) -> FileResult<KitchenWithSources> {
     let folder = layout_path.parent().unwrap_or(Path::new("."));
     let recipes_path = folder.join(layout.recipes.get_ref());
     let recipes_text = carried::read(&recipes_path).map_err(|reason| {
-        let found = format!("recipes = \"{}\", which cannot be read: {reason}", layout.recipes.get_ref());
+        let near = near_path::did_you_mean(&recipes_path, folder);
+        let found = format!("recipes = \"{}\", which cannot be read: {reason}{near}", layout.recipes.get_ref());
         let remedy = "the path of a recipe file, relative to the layout file".to_string();
         FileError::at(layout_path, &layout_text, Some(layout.recipes.span()), found, remedy)
     })?;

@@ -9,6 +9,7 @@ use serde::Deserialize;
 
 use tomcom_session::event::TrialEndReason;
 use tomcom_session::files::file_error::{FileError, FileResult, open_regular};
+use tomcom_session::files::near_path::did_you_mean;
 use tomcom_session::header::{FORMAT, PreviousPart};
 use tomcom_session::log::{
     LOG_NAME, LogEnding, LogReader, MAX_LINE, RecordingLock, SameLogs, first_line, header_digest, read_header, ruling,
@@ -92,11 +93,11 @@ pub fn of_folder(folder: &Path) -> FileResult<Vec<PathBuf>> {
     let remedy = "the folder of a recording, or one with recordings in it";
     let unreadable = |reason: io::Error| {
         let found = match reason.kind() {
-            ErrorKind::NotFound => "no folder of this name",
-            ErrorKind::NotADirectory => "a file, not a folder",
+            ErrorKind::NotFound => format!("no folder of this name{}", did_you_mean(folder, Path::new(""))),
+            ErrorKind::NotADirectory => "a file, not a folder".to_string(),
             _ => return FileError::unreadable(folder, reason, remedy),
         };
-        FileError::from_finding(folder, found.to_string(), remedy.to_string())
+        FileError::from_finding(folder, found, remedy.to_string())
     };
     if folder.join(LOG_NAME).is_file() {
         return Ok(vec![folder.to_path_buf()]);

@@ -103,4 +103,6 @@ fn outside_of_a_lab_the_program_reads_what_it_carries_and_says_so() {
             "{told}"
         );
     }
+    let (_, told) = run_in(&place, &["plan", "sessions/studdy.toml"]);
+    assert!(told.contains("; did you mean sessions/study.toml?"), "{told}");
 }

@@ -193,6 +193,11 @@ fn a_path_that_is_nearly_right_gets_a_suggestion() {
         let told = complaint(command);
         assert!(told.contains(&wanted), "{command:?}: {told}");
     }
+    for command in ["plan", "operate", "power", "simulate"] {
+        let told = complaint(&[command, "sessions/studdy.toml"]);
+        assert!(told.contains("sessions/studdy.toml: cannot be read"), "{told}");
+        assert!(told.contains("; did you mean sessions/study.toml?"), "{told}");
+    }
     let far = complaint(&["replay", &format!("{out}/another"), "--verify"]);
     assert!(!far.contains("did you mean") && far.contains("cannot be read"), "{far}");
 }

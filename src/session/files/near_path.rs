@@ -3,11 +3,22 @@
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
+use crate::files::carried;
 use tomcom_core::base::text;
 
-/// The existing path that is nearest to a path that does not exist: each missing name is replaced by the most similar
-/// existing name. `None` if there is no similar path, or the path exists.
+/// The existing or carried path that is nearest to a path that does not exist: each missing name is replaced by the most
+/// similar existing name. `None` if there is no similar path, or the path exists.
 pub fn nearest(path: &Path) -> Option<PathBuf> {
+    existing(path).or_else(|| carried::nearest(path))
+}
+
+/// "; did you mean FILE?", with the path from a folder as the user would write it; empty if no path is near.
+pub fn did_you_mean(path: &Path, from: &Path) -> String {
+    nearest(path)
+        .map_or(String::new(), |near| format!("; did you mean {}?", near.strip_prefix(from).unwrap_or(&near).display()))
+}
+
+fn existing(path: &Path) -> Option<PathBuf> {
     let mut found = PathBuf::new();
     for part in path.components() {
         let Component::Normal(name) = part else {

@@ -9,9 +9,10 @@ use clap::Args;
 use super::failure::Failure;
 use super::output::{OutputFormat, print, progress, put_aside};
 use crate::run::recording_list::{self, RecordingListDetail};
-use tomcom_core::base::text::{count, did_you_mean};
+use tomcom_core::base::text::count;
 use tomcom_session::files::near_path;
 use tomcom_session::log::{LOG_NAME, LogReader};
+use tomcom_session::person_code;
 use tomcom_study::files::recordings;
 use tomcom_study::gathered::GatheredRecordings;
 use tomcom_study::planned_trial::left_out_in_words;
@@ -107,7 +108,7 @@ pub(super) fn of_participant(folder: &Path, code: &str) -> Result<Vec<PathBuf>, 
         codes.insert(own);
     }
     if found.is_empty() {
-        let near = did_you_mean(code, &codes);
+        let near = person_code::did_you_mean(code, &codes);
         let codes: Vec<String> = codes.into_iter().take(MOST_NAMED).collect();
         return Err(Failure::Wrong(miette::miette!(
             help = format!("the code of a participant who is recorded there, such as {}", codes.join(", ")),

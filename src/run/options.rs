@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::run::files;
-use tomcom_core::base::text::did_you_mean;
 use tomcom_core::communication::settings::ConceptSpec;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_session::LogHeader;
 use tomcom_session::files::SessionSetup;
 use tomcom_session::files::file_error::FileResult;
+use tomcom_session::person_code;
 use tomcom_session::plan::PlanSpec;
 use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, SettingError};
 use tomcom_session::watcher::SenderComparisonSettings;
@@ -136,13 +136,16 @@ impl SettingOverrides {
 /// # Errors
 /// No code was given, or the code is not in the plan.
 pub fn participant_of_plan(plan: &PlanSpec, code: Option<&str>) -> Result<usize, SettingError> {
-    let remedy = "--code with one of the codes that tomcom plan SESSION lists";
-    let wrong = |found: String| SettingError::new("code", found, remedy);
-    let code = code.ok_or_else(|| wrong(format!("the plan \"{}\", and no code of a participant", plan.name)))?;
     let codes = plan.codes();
-    let near = || did_you_mean(code, &codes);
-    let stranger = || wrong(format!("--code {code}, a participant who is not in the plan \"{}\"{}", plan.name, near()));
-    codes.iter().position(|one| one == code).ok_or_else(stranger)
+    let remedy = format!("--code with a code of the plan: {}", person_code::listed(&codes));
+    let wrong = |found: String| SettingError::new("code", found, remedy);
+    let Some(code) = code else {
+        return Err(wrong(format!("the plan \"{}\", and no code of a participant", plan.name)));
+    };
+    codes.iter().position(|one| one == code).ok_or_else(|| {
+        let near = person_code::did_you_mean(code, &codes);
+        wrong(format!("--code {code}, a participant who is not in the plan \"{}\"{near}", plan.name))
+    })
 }
 
 /// The session of commands that are given none.

@@ -1,6 +1,8 @@
 //! Which codes people have: participants, raters and wizards. A code must be read as it is by every program that reads
 //! the tables, and it must be safe in names of folders and files.
 
+use tomcom_core::base::text;
+
 const LONGEST: usize = 16;
 /// Words, in small letters, that pandas, R and spreadsheets take for a missing value, a truth value or a number.
 const WORDS: [&str; 12] = ["f", "false", "inf", "infinity", "na", "nan", "nil", "no", "none", "null", "t", "true"];
@@ -26,6 +28,21 @@ pub fn fault(code: &str) -> Option<&'static str> {
 /// and one person for another.
 pub fn differing_in_case<'a>(code: &str, others: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     others.into_iter().find(|other| *other != code && other.eq_ignore_ascii_case(code))
+}
+
+/// "; did you mean P07?"; empty if no code is near. The number in a code tells people apart: one with another number is
+/// somebody else, however near it is.
+pub fn did_you_mean<Code: AsRef<str>>(mistyped: &str, codes: impl IntoIterator<Item = Code>) -> String {
+    let digits = |code: &str| code.chars().filter(char::is_ascii_digit).collect::<String>();
+    text::did_you_mean(mistyped, codes.into_iter().filter(|code| digits(code.as_ref()) == digits(mistyped)))
+}
+
+/// "A1, B2"; of many the first and the last, and how many there are: "P01 to P14 (14)".
+pub fn listed(codes: &[String]) -> String {
+    match codes {
+        [first, _, _, _, _, _, .., last] => format!("{first} to {last} ({})", codes.len()),
+        few => few.join(", "),
+    }
 }
 
 /// The participant's code in a name like `seed7-S001`, which tables give to a participant simulated with seed 7.

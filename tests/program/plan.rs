@@ -71,7 +71,9 @@ fn wrong_plans_and_arguments_say_what_would_be_right() {
     let study = "sessions/study.toml";
     refused(&["plan", "sessions/default.toml"], "a session without a plan");
     refused(&["operate", study], "and no code of a participant");
-    refused(&["operate", study, "--code", "P15"], "--code P15, a participant who is not in the plan");
+    refused(&["operate", study, "--code", "P15"], "--code P15, a participant who is not in the plan \"study\"\n");
+    refused(&["operate", study, "--code", "P15"], "--code with a code of the plan: P01 to P14 (14)");
+    refused(&["operate", study, "--code", "p07"], "not in the plan \"study\"; did you mean P07?");
     refused(
         &["operate", study, "--code", "P01", "--condition", "none"],
         "--condition, with a session file that has a plan",

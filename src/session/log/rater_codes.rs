@@ -95,7 +95,7 @@ pub fn check_named(what: &Path, named: &[String; 2], raters: &BTreeSet<String>) 
         true => "two raters who have coded the errors, each with tomcom replay RECORDING --rater CODE".to_string(),
         false => format!("two raters who have coded the errors; there are codes of {}", known.join(", ")),
     };
-    let found = format!("no codes of the rater {missing}{}", did_you_mean(missing, known));
+    let found = format!("no codes of the rater {missing}{}", person_code::did_you_mean(missing, known));
     Err(FileError::from_finding(what, found, remedy))
 }
 

@@ -5,13 +5,12 @@ use std::path::{Path, PathBuf};
 
 use crate::files::recordings;
 use crate::frozen_plan::{PlaceInPlan, RecordedPlan};
-use tomcom_core::base::text::did_you_mean;
 use tomcom_session::files::file_error::{FileResult, read_text};
 use tomcom_session::files::parse::parse;
 use tomcom_session::header::CodeCorrection;
 use tomcom_session::log::LogReader;
 use tomcom_session::plan::PlanSpec;
-use tomcom_session::{LogHeader, SessionSpec};
+use tomcom_session::{LogHeader, SessionSpec, person_code};
 
 /// Folder in which a lab keeps its session files.
 const SESSIONS: &str = "sessions";
@@ -39,12 +38,13 @@ pub fn remarks(recording: &Path, correction: &CodeCorrection) -> FileResult<Vec<
     let codes: Vec<String> = plans.iter().flat_map(|(_, plan)| plan.codes()).collect();
     let is_known = |one: &RecordedPlan| one.place.is_some_and(|place| place.participant.is_some());
     match plans.first() {
-        Some((file, _)) if !codes.contains(after) => told.push(format!(
-            "{after} is no participant of the plan \"{plan}\" in {}, so tomcom plan and tomcom operate refuse the recording; tomcom \
+        Some((file, of_file)) if !codes.contains(after) => told.push(format!(
+            "{after} is no participant of the plan \"{plan}\" in {} ({}), so tomcom plan and tomcom operate refuse the recording; tomcom \
              correct {} --undo takes the correction back{}",
             file.display(),
+            person_code::listed(&of_file.codes()),
             recording.display(),
-            did_you_mean(after, &codes)
+            person_code::did_you_mean(after, &codes)
         )),
         None if !others.iter().any(|other| other.participant == *after && is_known(other)) => told.push(format!(
             "no other recording of the plan \"{plan}\" in {} is of {after}: make sure that {after} is a participant of the plan",

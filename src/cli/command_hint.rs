@@ -1,15 +1,24 @@
-//! Hints in the message about an unknown command: a path is meant for a command that takes such a file.
+//! Hints in messages about arguments: which command takes a path that stands in the place of a command, and how the values
+//! of an option are separated.
 
 use std::path::Path;
 
+use clap::CommandFactory;
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
+use super::args::Cli;
 use tomcom_session::log::LOG_NAME;
 
-/// Adds to the message about an unknown command which command takes a file of this name; other messages, and those about
-/// a word that is like a command, stay as they are.
+/// Adds to the message about an unknown command which command takes a file of this name, and to that about an option's
+/// values how they are separated; other messages, and those about a word that is like a command, stay as they are.
 pub(super) fn add(mut error: clap::Error) -> clap::Error {
+    if let Some(hint) = with_commas(&error) {
+        // One of the values would be suggested alone.
+        error.remove(ContextKind::SuggestedValue);
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![StyledStr::from(hint)]));
+        return error;
+    }
     if error.kind() != ErrorKind::InvalidSubcommand {
         return error;
     }
@@ -25,6 +34,22 @@ pub(super) fn add(mut error: clap::Error) -> clap::Error {
     }
     error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![hint]));
     error
+}
+
+/// How several values of an option are typed, where other signs than commas separate them.
+fn with_commas(error: &clap::Error) -> Option<String> {
+    let text = |kind| match error.get(kind)? {
+        ContextValue::String(text) => Some(text),
+        _ => None,
+    };
+    let option = text(ContextKind::InvalidArg)?.strip_prefix("--")?.split(' ').next()?;
+    let is_list = |command: &clap::Command| {
+        command.get_arguments().any(|one| one.get_long() == Some(option) && one.get_value_delimiter().is_some())
+    };
+    let value = text(ContextKind::InvalidValue)?;
+    let values: Vec<&str> = value.split([';', ':', '+', '|', '/', ' ']).filter(|value| !value.is_empty()).collect();
+    let is_it = values.len() > 1 && Cli::command().get_subcommands().any(is_list);
+    is_it.then(|| format!("commas separate the values: --{option} {}", values.join(",")))
 }
 
 /// Which command takes this word as an argument.

@@ -40,7 +40,7 @@ pub(super) struct PowerArgs {
     #[command(flatten)]
     pool: PoolArgs,
     /// Numbers of participants for which the power is computed, separated by commas.
-    #[arg(long, value_name = "N,N,…", value_delimiter = ',', default_value = SIZES, value_parser = clap::value_parser!(u16).range(4..=1000))]
+    #[arg(long, value_name = "N,N,…", value_delimiter = ',', default_value = SIZES, value_parser = size)]
     sizes: Vec<u16>,
     /// Number of studies that are drawn for each number of participants.
     #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u64).range(20..=100_000))]
@@ -110,8 +110,13 @@ struct PoolArgs {
 }
 
 fn ratio(text: &str) -> Result<f64, String> {
-    let right = || "a ratio of rates above 0, at most 1, such as 0.7".to_string();
+    let right = || "wanted a ratio of rates above 0, at most 1, such as 0.7".to_string();
     text.parse().ok().filter(|&ratio| ratio > 0.0 && ratio <= 1.0).ok_or_else(right)
+}
+
+fn size(text: &str) -> Result<u16, String> {
+    let right = || "wanted a whole number from 4 to 1000".to_string();
+    text.parse().ok().filter(|size| (4..=1000).contains(size)).ok_or_else(right)
 }
 
 impl PoolArgs {

@@ -39,6 +39,20 @@ fn wrong_files_and_arguments_are_named_with_what_would_be_right() {
         let told = complaint(&[word]);
         assert!(told.contains(hint), "{word}: {told}");
     }
+    for (arguments, right) in [
+        (&["power", "nowhere", "--sizes", "10;12"][..], "commas separate the values: --sizes 10,12\n"),
+        (&["power", "nowhere", "--sizes", "ten"], "wanted a whole number from 4 to 1000\n"),
+        (&["power", "nowhere", "--sizes", "12,2"], "wanted a whole number from 4 to 1000\n"),
+        (
+            &["fit", "nowhere", "--parameters", "tau;half-life"],
+            "commas separate the values: --parameters tau,half-life\n",
+        ),
+        (&["study", "nowhere", "--skip", "concepts events"], "commas separate the values: --skip concepts,events\n"),
+        (&["compare", "nowhere", "--with", "tom + dev"], "commas separate the values: --with tom,dev\n"),
+    ] {
+        let told = complaint(arguments);
+        assert!(told.contains(right) && !told.contains("similar value"), "{told}");
+    }
     let told = complaint(&["operate", "--listen", "0.0.0.0:50022"]);
     assert!(told.contains("an address without a port, such as 0.0.0.0;") && told.contains("[display]"), "{told}");
     assert!(complaint(&["operate", "--listen", "here"]).contains("an IP address of this computer"));

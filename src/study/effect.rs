@@ -68,12 +68,28 @@ pub struct StudyMeasure {
     pub unit: &'static str,
     /// Definition of the measure for the data dictionary; empty if the unit says enough.
     pub meaning: &'static str,
+    /// Why a trial has no such value; empty if each has one.
+    pub unknown: &'static str,
     /// Meaning of the columns `_1` and `_2` in the table of participants; `{}` stands for "first" or "second".
     pub meaning_in: &'static str,
     pub title: &'static str,
     pub digits: usize,
     /// Value of the measure for a trial; `None` if the trial has no such value.
     pub value: fn(&TrialStatistics) -> Option<f64>,
+}
+
+impl StudyMeasure {
+    /// Its meaning in the table of trials.
+    pub fn meaning_of_trial(&self) -> String {
+        let unknown = if self.unknown.is_empty() { String::new() } else { format!("empty: {}", self.unknown) };
+        [self.meaning, &unknown].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("; ")
+    }
+
+    /// Its meaning in the table of participants, for a trial such as the "first".
+    pub fn meaning_of_nth(&self, nth: &str) -> String {
+        let unknown = if self.unknown.is_empty() { String::new() } else { format!(", or {}", self.unknown) };
+        format!("{}; empty: no such trial counts{unknown}", self.meaning_in.replace("{}", nth))
+    }
 }
 
 /// Two measures are equal if their names are; names are unique, since they are columns of one table.

@@ -93,31 +93,31 @@ impl CsvRow for ActionRow<'_> {
             "button", "", "name of the button"
                 => &row.kitchen.button(row.recorded.press.agent, row.recorded.press.button).name;
             "effective", "", "whether the press changed the kitchen" => row.recorded.press.effective;
-            "since_s", "s", "time since this agent's previous press, without pauses"
+            "since_s", "s", "time since this agent's previous press, without pauses; empty: its first"
                 => row.recorded.since_s.map(rounded);
-            "regret", "presses", "regret of a human press: presses of both agents that it loses"
+            "regret", "presses", "regret of a human press: presses of both agents that it loses; empty: the robot's"
                 => row.judged().map(|press| press.verdict.regret);
-            "excess", "presses", "regret minus that of the human's best press"
+            "excess", "presses", "regret minus that of the human's best press; empty as regret"
                 => row.judged().map(|press| press.verdict.excess);
-            "race", "", "whether a robot change at the same place was less than 300 ms before"
+            "race", "", "whether a robot change at the same place was less than 300 ms before; empty as regret"
                 => row.judged().map(|press| press.verdict.race);
-            "error", "", "whether the press is an error" => row.judged().map(|press| press.verdict.error);
-            "cause", "", "cause of an error: belief, planning or slip; source in the trial's beliefs_from; empty: \
-                unknown" => row.judged().and_then(|press| press.cause).map(cause_name);
-            "aspect", "", "aspect of the false belief behind a belief related error" => row.target(0);
+            "error", "", "whether the press is an error; empty as regret" => row.judged().map(|press| press.verdict.error);
+            "cause", "", "cause of an error: belief, planning or slip; source in the trial's beliefs_from; empty: no \
+                error, or unknown" => row.judged().and_then(|press| press.cause).map(cause_name);
+            "aspect", "", "aspect of the false belief behind a belief related error; empty: no such error" => row.target(0);
             "second_aspect", "", "second aspect, if only two false beliefs together explain the error, or if the two raters name \
-                different ones" => row.target(1);
-            "gain_nats", "nats", "log p(press | belief) - log p(press | truth)" => row.gain_nats();
-            "sequence", "", "number of a belief related error's sequence in the trial, from 1"
+                different ones; empty: neither" => row.target(1);
+            "gain_nats", "nats", "log p(press | belief) - log p(press | truth); empty: no belief related error, or not computed" => row.gain_nats();
+            "sequence", "", "number of a belief related error's sequence in the trial, from 1; empty: no such error"
                 => row.analysis.and_then(|analysis| analysis.sequence).map(|number| number as u64);
-            "cause_estimated", "", "cause of a person's error by the assistant's estimate: belief or slip"
+            "cause_estimated", "", "cause of a person's error by the assistant's estimate: belief or slip; empty: no error, or not of a person"
                 => row.analysis.and_then(|analysis| analysis.by_estimate).map(cause_name);
             "rater_1", "", "code of one of the two raters, who were named, settled a consensus or else coded most errors: belief \
-                (with location), slip, race, other or buttons" => row.code(|press| press.codes[0].cloned());
-            "rater_2", "", "code of the other rater" => row.code(|press| press.codes[1].cloned());
-            "log_p", "nats", "log probability of the human's press under the estimated belief"
+                (with location), slip, race, other or buttons; empty: not coded" => row.code(|press| press.codes[0].cloned());
+            "rater_2", "", "code of the other rater; empty: not coded" => row.code(|press| press.codes[1].cloned());
+            "log_p", "nats", "log probability of the human's press under the estimated belief; empty: the robot's, or no estimate"
                 => row.recorded.log_p.map(rounded);
-            "consensus", "", "code that the two raters share, where it defines the cause"
+            "consensus", "", "code that the two raters share, where it defines the cause; empty: none"
                 => row.code(|press| press.shared.cloned());
             "false_since_s", "s", "beginning of the false belief behind a belief related error, on the trial's clock; \
                 empty: not known" => row.analysis.and_then(|press| press.false_since_s).map(rounded);

@@ -35,7 +35,7 @@ impl CsvRow for CommunicationRow<'_> {
             "time_s", "s", "time on the trial's clock" => rounded(row.sent.clock.as_secs_f64());
             "press", "presses", "number of human presses before it" => row.sent.press;
             "kind", "", "recipe, highlight or proposal" => row.sent.content.kind.name();
-            "target", "", "location that the communication is about"
+            "target", "", "location that the communication is about; empty: a proposal"
                 => row.sent.content.target.map(|location| &row.kitchen.location(location).name);
             "matched", "", "whether the other lane has the same signal within the window; empty: no other lane"
                 => row.matched;
@@ -73,16 +73,16 @@ impl CsvRow for OfferRow<'_> {
             "time_s", "s", "time of its opening on the trial's clock" => rounded(row.timed.opened_s);
             "kind", "", "recipe, highlight or proposal" => row.signal().kind().name();
             "target", "", "location of the signal, or the proposed presses" => row.signal().names().join(" ");
-            "benefit", "presses; for tom a probability", "expected saving at the opening; for tom the belief deviation"
+            "benefit", "presses; for tom a probability", "expected saving at the opening; for tom the belief deviation; empty: a proposal, or an external concept gave none"
                 => row.timed.offer.advice.worth.map(|worth| worth.benefit);
-            "net", "presses; for tom a probability", "benefit minus the cost of communication or the threshold"
+            "net", "presses; for tom a probability", "benefit minus the cost of communication or the threshold; empty as benefit"
                 => row.timed.offer.advice.worth.map(|worth| worth.net);
-            "stood_s", "s", "time for which it was open, without pauses" => row.timed.stood_s.map(rounded);
+            "stood_s", "s", "time for which it was open, without pauses; empty: the recording was cut" => row.timed.stood_s.map(rounded);
             "closed", "", "reason of the close: taken, own_key, impossible, fell (no longer worth it), replaced, trial_ended; \
                 empty: the recording was cut" => row.timed.reason.map(OfferCloseReason::name);
             "key", "", "key that sent the offered signal while it could be taken: enter or own (the signal's own \
                 key); empty: not sent" => row.timed.offer.used.map(|used| offer_key_name(used.how));
-            "reaction_s", "s", "time from the opening to that key, without pauses" => row.timed.reaction_s.map(rounded);
+            "reaction_s", "s", "time from the opening to that key, without pauses; empty as key" => row.timed.reaction_s.map(rounded);
         }
     }
 }
@@ -200,9 +200,9 @@ impl CsvRow for BeliefRow<'_> {
                 => row.estimate.p_truth;
             "estimate_precision", "", "precision of the estimate: sum of the Dirichlet parameters"
                 => row.estimate.precision;
-            "believed", "", "most probable value in a simulated participant's belief"
+            "believed", "", "most probable value in a simulated participant's belief; empty: a person's"
                 => row.believed.map(|own| &own.believes);
-            "believed_p_truth", "probability", "probability of the true value in a simulated participant's belief"
+            "believed_p_truth", "probability", "probability of the true value in a simulated participant's belief; empty: a person's"
                 => row.believed.map(|own| own.p_truth);
 
         }

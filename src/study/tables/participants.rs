@@ -56,7 +56,7 @@ impl<'a> ParticipantRow<'a> {
                 => &row.0[0].participant;
             "kind", "", "kind of participant: simulated, keyboard (at the console) or display (at the wall display)"
                 => row.0[0].kind_name();
-            "group", "", "starting group in the study plan, with a letter for each trial; A: the plan's first condition"
+            "group", "", "starting group in the study plan, with a letter for each trial; A: the plan's first condition; empty: no plan"
                 => row.0[0].group.as_ref();
             "trials", "trials", "number of recorded trials" => row.0.len() as u64;
             "trials_counted", "trials", "number of trials that are not left out"
@@ -71,7 +71,7 @@ impl<'a> ParticipantRow<'a> {
         for measure in MEASURES {
             for (index, nth) in NTH.into_iter().enumerate().take(periods) {
                 let name = format!("{}_{}", measure.name, index + 1);
-                let meaning = measure.meaning_in.replace("{}", nth);
+                let meaning = measure.meaning_of_nth(nth);
                 columns.push(TableColumn::new(name, measure.unit, meaning, move |row: &Self| {
                     row.value(measure, index + 1).into()
                 }));
@@ -80,9 +80,9 @@ impl<'a> ParticipantRow<'a> {
         columns.extend(columns! { |row: Self|
             "consent_on", "", "where consent was given: held on the display, or confirmed by the wizard on the \
                 console; empty: not recorded" => row.1.map(RecordedConsent::place);
-            "consent_at", "", "wall clock time (UTC) at which the recording that begins with the consent began"
+            "consent_at", "", "wall clock time (UTC) at which the recording that begins with the consent began; empty: not recorded"
                 => row.1.and_then(|consent| consent.started.as_ref());
-            "consent_digest", "", "digest of the text that was agreed to, as the recording has it beside the text"
+            "consent_digest", "", "digest of the text that was agreed to, as the recording has it beside the text; empty: not recorded"
                 => row.1.map(|consent| &consent.digest);
         });
         columns
@@ -118,7 +118,7 @@ impl CsvRow for AnswerRow<'_> {
                 => row.trial.condition.name();
             "questionnaire", "", "name" => &row.answer.asked.questionnaire;
             "item", "", "id of the item" => &row.answer.asked.item;
-            "about", "", "construct that the item measures" => row.answer.asked.about.as_ref();
+            "about", "", "construct that the item measures; empty: the questionnaire says none" => row.answer.asked.about.as_ref();
             "reversed", "", "whether agreement counts against the construct" => row.answer.asked.reversed;
             "answer", "", format!(
                 "answer as given (not reversed): a point of the scale from 1, a number, a slider's position from 0 to 100, \
@@ -255,7 +255,7 @@ impl CsvRow for TutorialQuestionRow {
                 => row.first_answer.as_ref();
             "right", "", "whether the last answer was right; empty: not answered" => row.right;
             "tries", "", "number of answers, the right one included" => row.tries;
-            "seconds", "s", "from the question's first appearance to the right answer" => row.seconds;
+            "seconds", "s", "from the question's first appearance to the right answer; empty: none" => row.seconds;
 
         }
     }

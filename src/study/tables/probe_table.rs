@@ -69,29 +69,29 @@ impl CsvRow for ProbeRow<'_> {
             "wrong", "", "whether the answer differs from the truth; \"I don't know\" does; empty: no answer, or no \
                 truth" => row.question.is_wrong();
             "confidence", "", "1 (low) to 3 (high); empty: not asked" => row.question.confidence;
-            "took_s", "s", "time from the question's appearance to the answer" => row.question.took_s.map(rounded);
-            "estimate", "", "most probable value in the estimated belief at the freeze"
+            "took_s", "s", "time from the question's appearance to the answer; empty: no answer" => row.question.took_s.map(rounded);
+            "estimate", "", "most probable value in the estimated belief at the freeze; empty: level 2"
                 => row.frozen(|one| &one.estimate);
-            "estimate_p_truth", "probability", "probability of the true value in it"
+            "estimate_p_truth", "probability", "probability of the true value in it; empty: level 2"
                 => row.frozen(|one| one.estimate_p_truth);
             "estimate_p_false", "probability", "probability by the estimate that the belief in the truth is below one \
-                half: the prediction that calibration judges" => row.frozen(|one| one.estimate_p_false);
-            "estimate_p_answer", "probability", "probability of the answered value in it"
+                half: the prediction that calibration judges; empty: level 2" => row.frozen(|one| one.estimate_p_false);
+            "estimate_p_answer", "probability", "probability of the answered value in it; empty: none, or level 2"
                 => row.frozen(|one| one.estimate_p.get(row.question.answer()?).copied());
-            "estimate_values", "", "its values of at least 0.01, each with its probability" => row.frozen(told);
-            "believed", "", "most probable value in a simulated participant's belief"
+            "estimate_values", "", "its values of at least 0.01, each with its probability; empty: level 2" => row.frozen(told);
+            "believed", "", "most probable value in a simulated participant's belief; empty: a person's, or level 2"
                 => row.frozen(|one| one.believed.as_ref().map(|own| &own.believes));
-            "believed_p_truth", "probability", "probability of the true value in a simulated participant's belief"
+            "believed_p_truth", "probability", "probability of the true value in that belief; empty as believed"
                 => row.frozen(|one| one.believed.as_ref().map(|own| own.p_truth));
-            "changed_s", "s", "time since the location's last change, without pauses; empty: a recipe, or not changed \
+            "changed_s", "s", "time since the location's last change, without pauses; empty: a recipe, level 2, or not changed \
                 in the trial" => row.frozen(|one| one.changed_s.map(rounded));
             "changed_unseen", "", "whether somebody else changed the location since the last look of 0.1 s or own \
-                press there; empty: a recipe" => row.frozen(|one| one.changed_unseen);
-            "usual", "", "value that lay there longest until then; of a recipe the true one"
+                press there; empty: a recipe, or level 2" => row.frozen(|one| one.changed_unseen);
+            "usual", "", "value that lay there longest until then; of a recipe the true one; empty: level 2"
                 => row.frozen(|one| &one.usual);
-            "last_seen", "", "value that the participant last saw there, or made; of a recipe the true one"
+            "last_seen", "", "value that the participant last saw there, or made; of a recipe the true one; empty: level 2"
                 => row.frozen(|one| &one.last_seen);
-            "values", "", "number of values that could be answered" => row.frozen(|one| one.values as u64);
+            "values", "", "number of values that could be answered; empty: level 2" => row.frozen(|one| one.values as u64);
 
         }
     }

@@ -291,6 +291,15 @@ fn tables_are_written_as_they_are_declared() {
     assert_eq!([trial("contacts"), trial("given_up_fault")], [["", ""], ["", ""]]);
     assert!(trial("given_up_stopped").iter().all(|count| count.parse::<u64>().is_ok()));
     check_guarded_texts(&folder, &export);
+    // What is empty has its reason in the dictionary.
+    for column in TrialStatistics::columns() {
+        let is_empty = trials.iter().any(|trial| column.cell(trial) == TableCell::Unknown);
+        assert!(!is_empty || column.meaning.contains("empty"), "{}: {}", column.name, column.meaning);
+    }
+    for column in ParticipantRow::columns() {
+        let is_empty = participants(&trials, &[]).any(|one| column.cell(&one) == TableCell::Unknown);
+        assert!(!is_empty || column.meaning.contains("empty"), "{}: {}", column.name, column.meaning);
+    }
     let described = fields(&folder, CsvTable::Dictionary, "column");
     let of_trials: Vec<String> = fields(&folder, CsvTable::Dictionary, "table");
     let of_trials = of_trials.iter().zip(described).filter(|(table, _)| *table == "trials").map(|(_, column)| column);

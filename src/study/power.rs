@@ -377,7 +377,8 @@ fn power_in_words(found: &PowerSummary, needed: &RequiredSampleSize, index: usiz
     let middle = found.sizes.get(found.sizes.len() / 2);
     if let Some((size, ratio)) = middle.and_then(|size| Some((size, size.tests[index].least_ratio?))) {
         text += &format!(
-            " With {} participants, four of five studies find an effect that takes away {:.0} % of the {} or more.",
+            " With {} participants, four of five studies find an effect that takes away {:.0} % of the {} or more (interpolated between \
+             the effects tried).",
             size.participants,
             100.0 * (1.0 - ratio),
             found.outcome.title(),

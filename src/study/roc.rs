@@ -129,6 +129,10 @@ impl Curves {
     }
 }
 
+/// What is read off the curves at equal numbers of signals.
+pub const INTERPOLATED: &str =
+    "Values between the points of a curve, and between its sparsest point and no signals, are interpolated.";
+
 /// Height of a curve at `x` by linear interpolation; `None` outside of the curve's range of x.
 fn height(curve: &[(f64, f64)], x: f64) -> Option<f64> {
     let after = curve.iter().position(|point| point.0 >= x)?;

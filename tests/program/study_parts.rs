@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use tomcom_study::roc::INTERPOLATED;
+
 use crate::program::{self, done, refused, tomcom};
 
 /// Number of parts, and of trials.
@@ -96,6 +98,7 @@ fn eight_parts_are_analysed_each_by_itself_and_joined_to_the_bytes_of_one_analys
     assert!(less.contains("\n1 trial of the plan \"paper\" has no recording: P02 trial 1\n"), "{less}");
     let report = fs::read_to_string(folder.join("less/report.html")).expect("a report");
     assert!(report.contains("has no recording: P02 trial 1"), "the report says it, too");
+    assert!(less.contains(INTERPOLATED) && report.contains(INTERPOLATED), "{less}");
     assert!(!whole.contains("no recording") && !whole.contains("missing_trials"), "{whole}");
     refused(&["simulate", &plan, "--shard", "1/9", "--out", &at("none")], "--shard of 9 parts, with 8 trials");
     assert!(!folder.join("none").exists(), "nothing is simulated for too many parts");

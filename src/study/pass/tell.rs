@@ -10,7 +10,7 @@ use crate::headline::{
 use crate::live_arms::SignalSenderResults;
 use crate::pass::reading::WaivedPractice;
 use crate::planned_trial::{copies_in_words, foreign_in_words, in_words};
-use crate::roc::{BootstrapInterval, EQUAL_SIGNALS};
+use crate::roc::{BootstrapInterval, EQUAL_SIGNALS, INTERPOLATED};
 use crate::why::{self, percent};
 use tomcom_core::base::text::{count, decimal};
 use tomcom_core::measures::matching::{MatchShares, Similarity};
@@ -168,6 +168,7 @@ pub fn describe(figures: &StudySummary) -> String {
         for roc in &figures.roc {
             text += &format!("  {:<10}{}\n", roc.concept.title(), shares(&roc.useless_at_equal_signals));
         }
+        text += &format!("  {INTERPOLATED}\n");
         let shown =
             || figures.roc.iter().flat_map(|roc| roc.at_equal_signals.iter().chain(&roc.useless_at_equal_signals));
         if shown().any(|one| one.value.is_none()) {

@@ -6,7 +6,7 @@ use super::elements::{Captions, PageColumn, keys, nothing, number, told, with_in
 use crate::charts::{self, MOST_SIGNALS};
 use crate::figures::StudySummary;
 use crate::live_arms::SignalSenderResults;
-use crate::roc::{BootstrapInterval, ConceptRocCurve, EQUAL_SIGNALS};
+use crate::roc::{BootstrapInterval, ConceptRocCurve, EQUAL_SIGNALS, INTERPOLATED};
 use crate::why;
 use tomcom_core::base::text::count;
 use tomcom_core::measures::raters::BeliefSource;
@@ -116,8 +116,7 @@ fn at_equal_signals(captions: &mut Captions, figures: &StudySummary) -> Markup {
         std::iter::once("prevented".to_string()).chain(signals).chain(["partial area".to_string()]).collect();
     let caption = format!(
         "Shares of the belief related errors prevented at equal interruptions per 100 presses of the human, and shares of useless \
-         ones among the signals, with intervals of 95 % by bootstrap over participants ({} in {} unassisted trials). Values between the points of a curve, and between \
-         its sparsest point and no signals, are interpolated. The partial area is over false positive rates from 0 to {}, the largest that \
+         ones among the signals, with intervals of 95 % by bootstrap over participants ({} in {} unassisted trials). {INTERPOLATED} The partial area is over false positive rates from 0 to {}, the largest that \
          all concepts reach, divided by that range; its interval has the range of those who are drawn. The paper prints no figures \
          here; its ToM-Com lies clearly above ToM and DEV.",
         figures.roc_participants,

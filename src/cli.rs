@@ -151,7 +151,7 @@ fn show_plan(args: &PlanArgs) -> Result<(), Failure> {
     };
     let figures = StudyProgress::from_study(&study, &args.out)?;
     let Some(file) = &args.freeze else {
-        return print(args.format, &figures, || plan::describe(&figures));
+        return print(args.format, &figures, || plan::describe(&figures, doctor::columns()));
     };
     let frozen = plan::freeze(&study, &files.kitchen, &figures, file)?;
     print(args.format, &frozen, || frozen.describe())

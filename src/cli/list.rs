@@ -8,6 +8,7 @@ use clap::Args;
 
 use super::failure::Failure;
 use super::output::{OutputFormat, print, progress, put_aside};
+use crate::run::doctor::columns;
 use crate::run::recording_list::{self, RecordingListDetail};
 use tomcom_core::base::text::count;
 use tomcom_session::files::near_path;
@@ -45,7 +46,7 @@ pub(super) fn list(args: &ListArgs) -> Result<(), Failure> {
     let begun = |number: usize| bar.set_length(number as u64);
     let (list, _) = recording_list::list(&args.folder, RecordingListDetail::WithErrors, begun, || bar.inc(1))?;
     bar.finish_and_clear();
-    print(args.format, &list, || list.describe())
+    print(args.format, &list, || list.describe(columns()))
 }
 
 /// Chooses one recording per path: if a path is a folder of recordings, the user chooses a recording at the terminal.

@@ -63,6 +63,13 @@ pub fn wrap(text: &str, columns: u16) -> Vec<String> {
     lines
 }
 
+/// A text beside `first`, broken between words into lines from column `indent` to `columns`.
+pub fn beside(first: &str, text: &str, indent: u16, columns: u16) -> String {
+    let lines = wrap(text, columns.saturating_sub(indent).max(indent));
+    let starts = std::iter::once(first).chain(std::iter::repeat(""));
+    starts.zip(&lines).map(|(start, line)| format!("{start:indent$}{line}\n", indent = usize::from(indent))).collect()
+}
+
 /// Breaks a text into at most `rows` lines, with an ellipsis if something was cut off.
 pub fn wrap_to(text: &str, columns: u16, rows: u16, ellipsis: &str) -> Vec<String> {
     let mut lines = wrap(text, columns);

@@ -16,7 +16,7 @@ use serde::Serialize;
 
 use super::ask::ask;
 use super::terminal::theme;
-use crate::console::text_columns::wrap;
+use crate::console::text_columns::beside;
 use crate::console::view::theme::TerminalBackground;
 use tomcom_session::SessionSpec;
 use tomcom_session::features::Feature;
@@ -85,13 +85,7 @@ fn plan_remark(remark: String) -> PreflightCheck {
 
 /// The findings as text, wrapped to this width in columns.
 pub fn describe(findings: &DoctorReport, columns: u16) -> String {
-    let indented = |first: &str, text: &str| {
-        let lines = wrap(text, columns.saturating_sub(INDENT).max(INDENT));
-        let starts = std::iter::once(first).chain(std::iter::repeat(""));
-        let lines =
-            starts.zip(&lines).map(|(start, line)| format!("{start:indent$}{line}\n", indent = usize::from(INDENT)));
-        lines.collect::<String>()
-    };
+    let indented = |first: &str, text: &str| beside(first, text, INDENT, columns);
     let told = |check: &PreflightCheck| {
         let mark = match check.verdict {
             PreflightVerdict::Ok => "ok    ",
@@ -102,7 +96,7 @@ pub fn describe(findings: &DoctorReport, columns: u16) -> String {
         indented(&format!("{mark}  {:<16}  ", check.name), &check.found) + &remedy
     };
     let lines: String = findings.checks.iter().map(|one| told(&one.check)).collect();
-    lines + &wrap(&findings.conclusion(), columns).join("\n") + "\n"
+    lines + &beside("", &findings.conclusion(), 0, columns)
 }
 
 impl DoctorReport {

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::error::LiveError;
 use super::series::{recordings_of, slot_name, stands};
+use crate::console::text_columns::{beside, width};
 use tomcom_core::base::text::PathText;
 use tomcom_core::base::text::count;
 use tomcom_session::files::file_error::{FileError, FileResult, place_of, read_text};
@@ -177,8 +178,9 @@ pub fn check_frozen(session: &Path, files: &SessionSetup, frozen: &Path) -> File
     Err(wrong("another text of what participants are told, taught or asked"))
 }
 
-/// Progress of the study as text for the terminal.
-pub fn describe(figures: &StudyProgress) -> String {
+/// Progress of the study as text for a terminal of this width. Where the conditions leave little room, the letters of the
+/// groups stand for them.
+pub fn describe(figures: &StudyProgress, columns: u16) -> String {
     let mut sizes = BTreeMap::new();
     for one in &figures.participants {
         *sizes.entry(one.group.as_str()).or_insert(0) += 1;
@@ -198,18 +200,29 @@ pub fn describe(figures: &StudyProgress) -> String {
         figures.planned,
         sizes.join(", ")
     );
-    let one = |progress: &ParticipantProgress| {
+    let arms = |progress: &ParticipantProgress| -> Vec<&str> {
         let trials = progress.steps.iter().filter(|stand| stand.slot.period.is_some());
-        let order: Vec<&str> = trials.map(|stand| stand.slot.condition.title()).collect();
-        let width = figures.participants.iter().map(|one| one.code.len()).max().unwrap_or(0);
+        trials.map(|stand| stand.slot.condition.title()).collect()
+    };
+    let code = figures.participants.iter().map(|one| one.code.len()).max().unwrap_or(0);
+    let group = |progress: &ParticipantProgress| format!("{:code$}  {}  ", progress.code, progress.group);
+    let whole = |progress: &ParticipantProgress| format!("{}{}  ", group(progress), arms(progress).join(", "));
+    let is_wide = figures.participants.iter().any(|one| 2 * width(&whole(one)) > columns);
+    let one = |progress: &ParticipantProgress| {
+        let first = if is_wide { group(progress) } else { whole(progress) };
         let stands = stands(progress);
         let stands = stands.split_once(": ").map_or(stands.as_str(), |(_, stands)| stands);
-        let line = format!("{:width$}  {}  {}  {stands}\n", progress.code, progress.group, order.join(", "));
-        line + &attempts(progress)
+        let attempts = attempts(progress);
+        let attempts = attempts.lines().map(|line| beside("", line, 6, columns));
+        beside(&first, stands, width(&first), columns) + &attempts.collect::<String>()
     };
+    let letters = figures.participants.first().filter(|_| is_wide).map_or(String::new(), |one| {
+        let letters: BTreeMap<char, &str> = one.group.chars().zip(arms(one)).collect();
+        letters.into_iter().map(|(letter, arm)| format!("{letter}: {arm}")).collect::<Vec<_>>().join(", ")
+    });
     let remarks: String = figures.remarks.iter().map(|remark| format!("{remark}\n")).collect();
-    let head = head + &unbalanced(figures) + &remarks;
-    head + &figures.participants.iter().map(one).collect::<String>()
+    let head = head + &unbalanced(figures) + &remarks + &letters;
+    head.lines().map(|line| beside("", line, 0, columns)).chain(figures.participants.iter().map(one)).collect()
 }
 
 /// Remark on a number of participants with whom the orders of the conditions do not come equally often.
@@ -249,7 +262,7 @@ fn attempts(progress: &ParticipantProgress) -> String {
         if let ([_, _, ..], Some(_)) = (&complete[..], stand.slot.period) {
             let name = slot_name(progress, slot);
             lines += &format!(
-                "      {name} is done in {}; one of them counts, so leave the others out: tomcom exclude\n",
+                "{name} is done in {}; one of them counts, so leave the others out: tomcom exclude\n",
                 complete.join(" and in ")
             );
         }
@@ -273,8 +286,7 @@ fn attempts(progress: &ParticipantProgress) -> String {
                 (RecordingOutcome::Excluded { reason }, ..) => &format!("excluded ({reason})"),
                 (RecordingOutcome::Void { reason }, ..) => reason,
             };
-            lines +=
-                &format!("      {} in {}: {how}{version}{corrected}\n", slot_name(progress, slot), attempt.recording);
+            lines += &format!("{} in {}: {how}{version}{corrected}\n", slot_name(progress, slot), attempt.recording);
         }
     }
     lines

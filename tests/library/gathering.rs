@@ -456,6 +456,25 @@ fn listed(folder: &Path) -> Vec<(String, String)> {
 }
 
 #[test]
+fn a_list_fits_a_narrow_terminal_and_keeps_the_names_of_recordings_whole() {
+    let out = folder("narrow");
+    recorded(&out);
+    rule(&out.join("P02-1"), true, "lights went out").expect("excluded");
+    let list = list(&out, RecordingListDetail::WithErrors, |_| (), || ()).expect("a folder").0;
+    let shown = |columns: u16| {
+        let told = list.describe(columns);
+        let rows: Vec<&str> = told.lines().collect();
+        assert!(rows[..rows.len() - 1].iter().all(|row| row.chars().count() <= usize::from(columns)), "{told}");
+        list.recordings.iter().for_each(|one| assert!(told.contains(&format!("  {}\n", one.recording)), "{told}"));
+        (rows[0].split_whitespace().collect::<Vec<_>>().join(" "), told.contains("of paper"))
+    };
+    let whole = list.describe(u16::MAX);
+    assert!(whole.contains("P02-1  (excluded: lights went out)\n"), "{whole}");
+    assert_eq!(shown(68), ("code kind condition length errors state recording".to_string(), false));
+    assert_eq!(shown(52), ("code kind condition state recording".to_string(), false));
+}
+
+#[test]
 fn every_reader_has_the_corrected_code_until_it_is_taken_back() {
     let out = folder("readers");
     let plan = recorded(&out);

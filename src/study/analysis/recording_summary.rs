@@ -1,5 +1,7 @@
 //! Summary of one recording (presses, errors, beliefs, signals, gaze), and the list of the recordings in a folder.
 
+use std::collections::BTreeSet;
+
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::trial_summary::{FalseBeliefErrorSummary, TrialSummary};
@@ -220,16 +222,40 @@ impl RecordingList {
         RecordingList { folder, recordings }
     }
 
-    pub fn describe(&self) -> String {
+    /// As text for a terminal of this width. Where it is too narrow, columns go in the order in which they are missed least,
+    /// and the names of recordings stay whole.
+    pub fn describe(&self, columns: u16) -> String {
         let mut rows: Vec<[String; 8]> = vec![RecordingList::HEADINGS.map(str::to_string)];
         rows.extend(self.recordings.iter().map(ListedRecording::cells));
-        let widths: Vec<usize> = (0..8).map(|column| widest(&rows, column)).collect();
+        let plans: BTreeSet<Option<&str>> =
+            self.recordings.iter().map(|one| Some(one.place.as_ref()?.plan.as_str())).collect();
+        let mut shown: Vec<(usize, usize)> = (0..8).map(|column| (column, widest(&rows, column))).collect();
+        let fits = |shown: &[(usize, usize)]| {
+            shown.iter().map(|(_, width)| width + 2).sum::<usize>() <= usize::from(columns) + 2
+        };
+        if !fits(&shown) {
+            shown.retain(|(column, _)| rows[1..].iter().any(|row| row[*column] != "-"));
+        }
+        if let ([Some(plan)], false) = (&plans.iter().copied().collect::<Vec<_>>()[..], fits(&shown)) {
+            let of_plan = format!(" of {plan}");
+            rows.iter_mut().for_each(|row| row[1] = row[1].replace(&of_plan, ""));
+            shown.iter_mut().for_each(|(column, width)| *width = widest(&rows, *column));
+        }
+        for heading in ["date", "errors", "length"] {
+            if !fits(&shown) {
+                shown.retain(|(column, _)| RecordingList::HEADINGS[*column] != heading);
+            }
+        }
         let mut text = String::new();
         for (row, one) in rows.iter().zip(std::iter::once(None).chain(self.recordings.iter().map(Some))) {
-            let cells = row.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}"));
-            text.push_str(cells.collect::<Vec<_>>().join("  ").trim_end());
-            let reason = one.and_then(|one| one.reason.as_ref());
-            text.push_str(&reason.map_or("\n".to_string(), |reason| format!("  ({reason})\n")));
+            let cells = shown.iter().map(|(column, width)| format!("{:<width$}", row[*column]));
+            let line = cells.collect::<Vec<_>>().join("  ").trim_end().to_string();
+            let reason = one.and_then(|one| one.reason.as_ref()).map(|reason| format!("({reason})"));
+            let beside = reason.map_or(String::new(), |reason| {
+                let is_short = line.chars().count() + 2 + reason.chars().count() <= usize::from(columns);
+                format!("{}{reason}", if is_short { "  " } else { "\n    " })
+            });
+            text += &format!("{line}{beside}\n");
         }
         text + &format!("{} in {}\n", count(self.recordings.len() as u64, "recording", "recordings"), self.folder)
     }

@@ -1,5 +1,6 @@
 //! Who comes under which condition with which orders, and what comes next whatever was recorded.
 
+use tomcom::run::plan::{StudyProgress, describe};
 use tomcom_session::orders::OrderList;
 use tomcom_session::plan::{
     NextRecording, ParticipantProgress, Participants, PhaseStand, PlanRecording, RecordingOutcome, Study,
@@ -277,4 +278,23 @@ fn practice_has_no_probes_and_may_be_shorter_than_they_need() {
     let mut trial = of(1);
     trial.trial.seconds = 60.0;
     assert!(trial.check().is_err_and(|error| error.found.contains("takes 75 s")), "a trial of that length");
+}
+
+/// A name that a terminal breaks cannot be found, nor typed again.
+#[test]
+fn a_plan_fits_a_narrow_terminal_with_letters_for_its_conditions() {
+    let study = session_file("all-arms").study().expect("a plan");
+    let figures = StudyProgress::from_study(&study, &folder("narrow")).expect("an empty folder");
+    // The folder's path may be long.
+    let figures = StudyProgress { remarks: Vec::new(), ..figures };
+    let titles = study.plan.conditions.iter().map(|arm| arm.title());
+    let letters: Vec<String> = ('A'..).zip(titles).map(|(letter, title)| format!("{letter}: {title}")).collect();
+    let wide = describe(&figures, u16::MAX);
+    assert!(!wide.contains(&letters.join(", ")), "{wide}");
+    for columns in [60, 80] {
+        let told = describe(&figures, columns);
+        assert!(told.lines().all(|line| line.chars().count() <= usize::from(columns)), "{told}");
+        assert!(told.replace('\n', " ").contains(&letters.join(", ")), "{told}");
+        assert_eq!(told.lines().filter(|line| line.contains("done, next: ")).count(), figures.participants.len());
+    }
 }

@@ -105,11 +105,14 @@ pub fn may_send(session: &Session, by: Sender) -> Result<(), &'static str> {
     }
 }
 
-fn admit_signal(session: &Session, by: Sender, signal: &Signal) -> Result<(), &'static str> {
-    if session.phase != TrialPhase::Running {
-        return Err("signals are sent while the trial runs");
-    }
+/// What never allows signals comes before what does not allow them now.
+pub(crate) fn may_send_now(session: &Session, by: Sender) -> Result<(), &'static str> {
     may_send(session, by)?;
+    refuse_if(session.phase != TrialPhase::Running, "signals are sent while the trial runs")
+}
+
+fn admit_signal(session: &Session, by: Sender, signal: &Signal) -> Result<(), &'static str> {
+    may_send_now(session, by)?;
     if matches!(signal, Signal::Propose(_)) && session.spec.assistant.concept != ConceptName::Dev {
         return Err("only DEV proposes presses");
     }

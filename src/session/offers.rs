@@ -4,7 +4,7 @@
 //! of an offer that `due` returns; a replay applies the recorded events. Ages of offers are measured on the trial's
 //! clock, so offers do not grow older in a pause.
 
-use crate::admit::{admit, hygiene};
+use crate::admit::{admit, hygiene, may_send, may_send_now};
 use crate::settings::{Condition, WizardVisibility};
 use crate::{Event, Session, TrialPhase};
 use tomcom_core::base::time::SessionTime;
@@ -172,9 +172,11 @@ pub fn meant(session: &Session, now: SessionTime) -> Result<&Offer, &'static str
 
 /// The offer that `enter` takes, with the event that sends its signal.
 pub fn enter(session: &Session, now: SessionTime) -> Result<(&Offer, Event), String> {
+    may_send(session, Sender::Wizard)?;
     if session.spec.console.visibility != WizardVisibility::Recommendation {
         return Err("recommendations are not shown in this session".to_string());
     }
+    may_send_now(session, Sender::Wizard)?;
     let offer = meant(session, now)?;
     let event = take(offer).ok_or("proposed presses are for the participant to make; they cannot be sent")?;
     admit(session, &event)?;

@@ -246,6 +246,18 @@ fn enter_is_named_only_where_it_sends() {
     stage.session.spec.trial.condition = Condition::None;
     stage.wait(1.0);
     assert!(!hints(&stage) && !names(&stage), "nobody may send:\n{}", stage.screen((200, 60)));
+    // What is never so comes before what is not so now.
+    for phase in [TrialPhase::Ready, TrialPhase::Running, TrialPhase::Over(TrialEndReason::Presses)] {
+        let never = "nobody sends signals in the unassisted condition";
+        for (condition, why) in [(Condition::None, never), (Condition::Wizard, "signals are sent while the trial runs")]
+        {
+            (stage.session.phase, stage.session.spec.trial.condition) = (phase, condition);
+            stage.wait(1.0);
+            stage.key(KeyCode::Enter);
+            let is_told = stage.notice().contains(why);
+            assert_eq!(is_told, why == never || phase != TrialPhase::Running, "{phase:?}: {}", stage.notice());
+        }
+    }
 }
 
 #[test]

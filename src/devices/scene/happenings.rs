@@ -163,7 +163,7 @@ impl JudgedPressShown<'_> {
     /// Why the press was an error, with its cost and its cause.
     pub fn why(&self, session: &Session) -> String {
         let explained = ExplainedError::among(session, std::slice::from_ref(self.press));
-        explained.into_iter().map(|error| error.with_cause).collect()
+        explained.iter().map(|error| error.told_without_press(None)).collect()
     }
 }
 

@@ -18,17 +18,21 @@ pub struct ExplainedError {
     pub press: String,
     /// "order 1 needs tuna", "the hand is empty".
     pub why: String,
-    /// The reason, the cause, if it is known, and the cost: "no order needs tuna; cause (simulated participant): slip; costs 2
-    /// presses". Raters are not shown it.
-    pub with_cause: String,
+    /// "cause (simulated participant): slip", if it is known. Raters are not shown it.
+    pub cause: Option<String>,
+    /// "costs 2 presses".
+    pub cost: String,
 }
 
 impl ExplainedError {
     /// The press with its reason, then what was believed wrong, cause and cost.
     pub fn told(&self, believed: Option<String>) -> String {
-        let ExplainedError { press, why, with_cause, .. } = self;
-        let believed = believed.map_or(String::new(), |believed| format!("; {believed}"));
-        format!("{press}: {why}{believed}{}", with_cause.strip_prefix(why.as_str()).unwrap_or_default())
+        format!("{}: {}", self.press, self.told_without_press(believed))
+    }
+
+    pub fn told_without_press(&self, believed: Option<String>) -> String {
+        let parts = [Some(&self.why), believed.as_ref(), self.cause.as_ref(), Some(&self.cost)];
+        parts.into_iter().flatten().map(String::as_str).collect::<Vec<_>>().join("; ")
     }
 
     /// The errors among judged presses of a session, whose timeline goes to the last of them at least. Their reasons need
@@ -41,20 +45,12 @@ impl ExplainedError {
             work.follow(&session.kitchen, &session.timeline[followed..until]);
             followed = until;
             let orders = work.needs(&session.kitchen, press.before);
-            let why = Reasons { session, press, orders, earlier: &session.timeline[..until] }.why();
             ExplainedError {
                 time: press.time,
                 press: wording::button(&session.kitchen, Agent::Human, press.button),
-                with_cause: [
-                    Some(why.clone()),
-                    event_words::cause(&session.kitchen, press),
-                    Some(event_words::cost(press)),
-                ]
-                .into_iter()
-                .flatten()
-                .collect::<Vec<_>>()
-                .join("; "),
-                why,
+                why: Reasons { session, press, orders, earlier: &session.timeline[..until] }.why(),
+                cause: event_words::cause(&session.kitchen, press),
+                cost: event_words::cost(press),
             }
         });
         explained.collect()

@@ -146,7 +146,8 @@ impl Stage {
             time: at(seconds),
             press: press.to_string(),
             why: why.to_string(),
-            with_cause: why.to_string(),
+            cause: None,
+            cost: "costs 1 press".to_string(),
         };
         stage.model.errors =
             vec![error(15.0, "trash", "the hand is empty"), error(21.0, "take salmon", "order 1 needs tuna")];

@@ -231,10 +231,12 @@ fn an_error_is_explained_by_what_the_orders_need() {
         let explained = ExplainedError::among(&session, &[press]);
         assert_eq!(explained[0].why, why, "{presses:?}");
         let cost = format!("; costs {} press", press.verdict.excess);
-        assert!(explained[0].with_cause.starts_with(&format!("{why}{cost}")), "{}", explained[0].with_cause);
+        let told = explained[0].told_without_press(None);
+        assert!(told.starts_with(&format!("{why}{cost}")), "{told}");
         let press = JudgedPress { cause: Some(ErrorCause::Slip), ..press };
-        let caused = &ExplainedError::among(&session, &[press])[0].with_cause;
-        assert!(caused.starts_with(&format!("{why}; cause (simulated participant): slip{cost}")), "{caused}");
+        let told = ExplainedError::among(&session, &[press])[0].told_without_press(Some("thinks nori".to_string()));
+        let caused = format!("{why}; thinks nori; cause (simulated participant): slip{cost}");
+        assert!(told.starts_with(&caused), "{told}");
     };
     check(&["crab maki"], &[(Human, "take shrimp")], "order 1 needs crab");
     // With two orders nobody knows for which of them it was.

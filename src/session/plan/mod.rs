@@ -8,12 +8,14 @@
 
 use serde::{Deserialize, Serialize};
 
+mod difference;
 mod study;
 
 use crate::person_code;
+pub use crate::plan::difference::{PlanDifference, differences, listed};
 pub use crate::plan::study::{
-    NextRecording, ParticipantProgress, PhaseStand, PlanDifference, PlanRecording, PlannedTrial, PlannedTrialProgress,
-    RecordingOutcome, Study, TrialAttempt, WantedRecording, differences, listed,
+    NextRecording, ParticipantProgress, PhaseStand, PlanRecording, PlannedTrial, PlannedTrialProgress,
+    RecordingOutcome, Study, TrialAttempt, WantedRecording,
 };
 use crate::protocol::StudyPhase;
 pub use crate::questionnaire::{

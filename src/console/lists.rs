@@ -5,6 +5,7 @@ use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use fuzzy_matcher::FuzzyMatcher;
 use fuzzy_matcher::skim::SkimMatcherV2;
 
+use super::chord::KeyChord;
 use super::console_model::{ConsoleModel, Dialog};
 use super::key_action::{KeyAction, KeyBinding, ManualAction};
 use super::possible::is_possible_behind;
@@ -345,9 +346,9 @@ fn ends(action: &KeyAction) -> bool {
     )
 }
 
-/// The actions that match the filter, the best match first, else in the order of the help; those without an effect when
-/// the palette was opened come last. Without a filter, the one that
-/// the palette was opened with is first, and what stops the robot or ends the trial or the session is last.
+/// The actions that match the filter, the best match first, else in the order of the help; first the one whose key the
+/// filter names, last those without an effect when the palette was opened. Without a filter, the one that the palette
+/// was opened with is first, and what stops the robot or ends the trial or the session is last.
 pub fn actions<'a>(model: &'a ConsoleModel, cursor: &ListCursor) -> Vec<&'a KeyBinding> {
     let is_active =
         |line: &&KeyBinding| line.layer.is_none_or(|only| only == model.layer) && line.action != KeyAction::Palette;
@@ -355,10 +356,16 @@ pub fn actions<'a>(model: &'a ConsoleModel, cursor: &ListCursor) -> Vec<&'a KeyB
     if cursor.filter.is_empty() {
         active.sort_by_key(|line| (model.palette_first.as_ref() != Some(&line.action), ends(&line.action)));
     }
-    let words = active.iter().map(|line| format!("{}\n{}\n{}", line.help, line.group, synonyms(&line.action)));
+    let keys = |line: &KeyBinding| line.chords.iter().map(KeyChord::to_string).collect::<Vec<_>>();
+    let words = active
+        .iter()
+        .map(|line| format!("{}\n{}\n{}\n{}", line.help, line.group, synonyms(&line.action), keys(line).join(" ")));
     let mut found: Vec<&KeyBinding> = cursor.found(words).into_iter().map(|index| active[index]).collect();
+    // A single letter begins a word.
+    let is_letter = cursor.filter.len() == 1 && cursor.filter.chars().all(char::is_alphanumeric);
+    let is_keyed = |line: &KeyBinding| !is_letter && keys(line).contains(&cursor.filter);
     if !cursor.filter.is_empty() {
-        found.sort_by_key(|line| model.palette_idle.contains(&line.action));
+        found.sort_by_key(|line| (!is_keyed(line), model.palette_idle.contains(&line.action)));
     }
     found
 }

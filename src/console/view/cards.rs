@@ -232,8 +232,9 @@ fn signals(session: &Session, model: &ConsoleModel) -> Vec<Fact> {
         facts.push(fact("signals", "none".to_string(), TextRole::Text));
     }
     if session.spec.trial.condition == Condition::Wizard {
-        let words = model.wizard.words().map_or(Vec::new(), Vec::from);
-        facts.extend(words.into_iter().map(|words| fact("", words, TextRole::Text)));
+        let judged = model.wizard.words().into_iter().flatten().map(|words| fact("", words, TextRole::Text));
+        let each = fact("", "each signal's verdict: tomcom review RECORDING --signals".to_string(), TextRole::Quiet);
+        facts.extend(judged.chain(Some(each).filter(|_| model.wizard.hits.is_some() && model.wizard.signals > 0)));
     }
     facts
 }

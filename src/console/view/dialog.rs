@@ -332,16 +332,13 @@ pub fn draw_answers(brush: &mut Painter, screen: Rect, session: &Session, picker
 /// Text for what the space bar does in a list of a live session.
 const STOPS: &str = "space stops the robot";
 
-/// Draws the palette (the list of all actions): key, action, and group; actions without an effect now are grey.
+/// Draws the palette (the list of all actions): key, action, and group; actions without an effect now are grey and say so.
 pub fn draw_palette(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel, cursor: &ListCursor) {
     let row = |line: &&KeyBinding| {
         let key = line.chords.first().map_or(String::new(), KeyChord::to_string);
-        Row {
-            number: String::new(),
-            label: format!("{key:>7}  {}", line.help),
-            remark: line.group.to_string(),
-            counts: is_possible_behind(session, model, &line.action),
-        }
+        let counts = is_possible_behind(session, model, &line.action);
+        let remark = if counts { line.group } else { "no effect now" };
+        Row { number: String::new(), label: format!("{key:>7}  {}", line.help), remark: remark.to_string(), counts }
     };
     let rows = lists::actions(model, cursor).iter().map(row).collect();
     let all = lists::actions(model, &ListCursor::default());

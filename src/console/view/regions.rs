@@ -62,8 +62,8 @@ pub struct PanelAreas {
 
 /// Least number of columns at which the offer and its reason fit into one line.
 const OFFER_COLUMNS: u16 = 140;
-/// Least height of a terminal on which a replay's message has two lines.
-const TWO_MESSAGES: u16 = 24;
+/// A replay's message has one line for so many rows of the terminal.
+const ROWS_PER_MESSAGE_LINE: u16 = 12;
 /// Least width of the kitchen panel, in columns, at which names of usual length need no abbreviation.
 const KITCHEN_COLUMNS: u16 = 81;
 /// Rows and columns of a panel's frame.
@@ -106,7 +106,8 @@ struct LineRows {
     codebook: Option<[u16; 3]>,
     comparison: Option<u16>,
     scrubs: bool,
-    /// What a replay says of errors and signals is longer than what a session, a training or a rater is told.
+    /// At most so many lines: what a replay says of errors and signals is longer than what a session, a training or a rater
+    /// is told.
     messages: u16,
     /// Of an offer on a narrow terminal: its reason stands in a line of its own.
     offer: u16,
@@ -126,7 +127,7 @@ impl PanelAreas {
             [compact, least, most]
         });
         let scrubs = model.playback.is_some();
-        let messages = if scrubs && codebook.is_none() && model.lesson.is_none() { 2 } else { 1 };
+        let messages = if scrubs && codebook.is_none() && model.lesson.is_none() { 3 } else { 1 };
         let kitchen = LineRows::for_kitchen(&session.kitchen);
         let offer = if session.spec.asks_assistant() { 2 } else { 1 };
         let lines = LineRows { codebook, comparison: compared, scrubs, messages, offer, ..kitchen };
@@ -173,7 +174,7 @@ impl PanelAreas {
         let offer_rows = if size.0 < OFFER_COLUMNS { lines.offer } else { 1 };
         let (offer, rest) = top(rest, if visibility == WizardVisibility::Recommendation { offer_rows } else { 0 });
         let (rest, footer) = bottom(rest, 1);
-        let (rest, message) = bottom(rest, if size.1 >= TWO_MESSAGES { lines.messages } else { 1 });
+        let (rest, message) = bottom(rest, lines.messages.min(size.1 / ROWS_PER_MESSAGE_LINE).max(1));
         let (rest, scrub) = bottom(rest, u16::from(lines.scrubs));
         let blank = Rect::default();
         let (rest, codebook, errors) = match lines.codebook {

@@ -92,6 +92,14 @@ fn an_action_is_found_by_typing_and_done_as_by_its_key() {
         assert_eq!(input(stage.key(KeyCode::Enter)), Some(expected), "{typed}: {}", stage.notice());
         assert_eq!(stage.model.dialog, None);
     }
+    // A key is found by its name, but a single letter begins words.
+    for expected in [KeyAction::Manual(ManualAction::HoldRobot), KeyAction::SwitchLayer, KeyAction::Quit] {
+        let mut stage = Stage::sushi(ParticipantKind::Keyboard);
+        let key = stage.model.keys.chord_for(&expected).expect("a key").to_string();
+        stage.control('k');
+        type_in(&mut stage, &key);
+        assert_eq!(first(&stage), expected, "{key}");
+    }
     for typed in ["endthetrial", "finish"] {
         let mut stage = Stage::sushi(ParticipantKind::Simulated);
         stage.control('k');

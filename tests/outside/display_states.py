@@ -13,7 +13,7 @@ from pathlib import Path
 from console import Console
 from page import Page
 
-PORT = 20341
+PORT = 20361
 PAGE = Path("src/devices/display/page")
 LANGUAGES = Path("src/devices/sight/languages")
 KITCHENS = ("sushi", "burger")

@@ -87,7 +87,7 @@ const Upright = (wall, fontFamily, ratio) => {
         const left = at ? middle : EDGE, column = columns[at], knobs = knobsAt(index), aside = knobs.length ? ASIDE : (column - wide) / 2, gap = gaps[at];
         const x = at ? left + aside : left + column - aside - wide;
         areas.locations[index] = rect(x, y + NAME, wide, touch);
-        areas.limits.set(areas.locations[index], knobs.length ? wide + 2 * (gap - FRAMED) : column - 1);
+        areas.limits.set(areas.locations[index], knobs.length ? wide + 2 * Math.min(ASIDE, gap - FRAMED) : column - 2.6);
         spread(knobs.length, at ? x + wide + gap : left + 0.7, room[at] - wide - gap, APART).forEach(([from, width], one) => areas.knobs.set(knobs[one].name, rect(from, y + NAME, width, touch)));
       });
       y += NAME + touch + INNER;
@@ -99,9 +99,9 @@ const Upright = (wall, fontFamily, ratio) => {
   function putMine(top) {
     let y = top + INNER / 2;
     const [hand] = of("human_hand"), knobs = knobsAt(hand);
-    areas.locations[hand] = rect(EDGE + 8, y + NAME, PLACE, touch);
-    areas.limits.set(areas.locations[hand], 14);
-    const from = EDGE + 20, wide = WIDE - EDGE - 0.8 - from;
+    areas.locations[hand] = rect(EDGE + 8.6, y + NAME, PLACE, touch);
+    areas.limits.set(areas.locations[hand], 12);
+    const from = EDGE + 21, wide = WIDE - EDGE - 0.8 - from;
     spread(knobs.length, from, wide, 1).forEach(([x, width], at) => areas.knobs.set(knobs[at].name, rect(x, y + NAME, width, touch)));
     y += NAME + touch + INNER;
     for (const row of rows.mine) {

@@ -24,7 +24,7 @@ const Reason = (() => {
   // how far the line is moved in one try.
   const WORDS = 1.6, LINE = 1.8, PAD = [2.4, 0.5], AIR = 0.1, CLEAR = 0.3, MARK = 0.6, STEP = 0.9;
   // How far away, in em, the line would rather stand than hide a square em of something, or of a name, or stand over a card's edge, or have another line.
-  const HIDES = 60, HIDES_NAME = 0.5, OVER = 5000, BROKEN = 0.1;
+  const HIDES = 60, HIDES_NAME = 0.45, OVER = 5000, BROKEN = 0.1;
   // So small words can still be read on a screen in the hand, which alone is narrower than a line.
   const LEAST = 0.72;
 

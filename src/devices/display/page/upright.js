@@ -6,8 +6,8 @@
 const Upright = (wall, fontFamily, ratio) => {
   const WIDE = Upright.wideOf(ratio), BETWEEN = 0.8, EDGE = 0.8;
   // Height of a name above its place; sizes of names and words; least and most height of what is touched; height of orders, as a share of it;
-  // height for recipes and texts, and what they have more of it as such a share.
-  const NAME = 2.1, WORDS = 1.6, TOUCH = [5.8, 12], ORDER = 1.35, TEXTS = [0.6, 1.6];
+  // height for recipes and texts on the least high stage, what they have more as such a share, and of a higher one as a share of what it has more.
+  const NAME = 2.1, WORDS = 1.6, TOUCH = [5.8, 12], ORDER = 1.35, TEXTS = [0.6, 1.6, 0.25];
   // Room below what is touched, height of the title of the robot's side, and width of the robot's hand beside something.
   const INNER = 1.1, TITLE = 2.2, HAND = 6.2;
   // Width of a place, as a share of its height, of which names and buttons leave less; its least width; room beside it towards the middle, where the robot's hand stands;
@@ -31,9 +31,10 @@ const Upright = (wall, fontFamily, ratio) => {
   const named = 1 + rows.places.length + rows.mine.length, column = (WIDE - 2 * EDGE) / Math.max(...rows.theirs.map((row) => row.length));
   // What the robot has is as large as what is touched, if its hand, where it is drawn, has room beside it; else smaller, with room for the hand below. As shares of what is touched.
   const isBeside = wall.arm !== "none" && column - HAND >= TOUCH[0], [theirs, lane] = isBeside ? [1, 0] : [0.85, wall.arm === "none" ? 0 : 0.85];
-  const fixed = 2 * EDGE + 3 * BETWEEN + named * (NAME + INNER) + 3 * INNER + TITLE + rows.theirs.length * (NAME + INNER) + TEXTS[0], shares = ORDER + named + (theirs + lane) * rows.theirs.length + TEXTS[1];
+  const least = TEXTS[0] + TEXTS[2] * (high - Upright.LEAST_HIGH);
+  const fixed = 2 * EDGE + 3 * BETWEEN + named * (NAME + INNER) + 3 * INNER + TITLE + rows.theirs.length * (NAME + INNER) + least, shares = ORDER + named + (theirs + lane) * rows.theirs.length + TEXTS[1];
   const touch = Math.min(TOUCH[1], Math.max(TOUCH[0], (high - fixed) / shares)), small = Math.min(theirs * touch, column - (isBeside ? HAND : 2.4)), order = ORDER * touch;
-  const texts = TEXTS[0] + TEXTS[1] * touch + Math.max(0, high - fixed - shares * touch), flat = FLAT * touch;
+  const texts = least + TEXTS[1] * touch + Math.max(0, high - fixed - shares * touch), flat = FLAT * touch;
 
   const areas = { locations: [], storages: [], knobs: new Map(), limits: new Map() };
   const rect = (x, y, w, h) => [x / WIDE, y / high, w / WIDE, h / high];
@@ -155,4 +156,5 @@ const Upright = (wall, fontFamily, ratio) => {
 };
 
 // How wide the stage is, in em; it is never less high than the layout needs.
-Upright.wideOf = (ratio) => Math.max(48, 85 * ratio);
+Upright.LEAST_HIGH = 85;
+Upright.wideOf = (ratio) => Math.max(48, Upright.LEAST_HIGH * ratio);

@@ -1,6 +1,6 @@
 # Reads the tables of `tomcom study` with R alone.
 #
-#   Rscript examples/read_tables.R sessions/study
+#   Rscript read_tables.R sessions/study
 #
 # Prints the same as read_tables.py.
 

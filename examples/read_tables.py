@@ -1,6 +1,6 @@
 """Reads the tables of `tomcom study` with pandas.
 
-    python examples/read_tables.py sessions/study
+    python read_tables.py sessions/study
 
 Prints the error rate by condition, the paired difference of every participant, and the errors by their causes.
 """

@@ -7,7 +7,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::list::{exists, gathered};
+use super::list::{exists, gathered, near_code};
 use super::output::{OutputFormat, print, progress, put, put_aside};
 use crate::run::forget::{self, ParticipantData};
 use crate::run::review_console;
@@ -239,7 +239,8 @@ pub(super) fn forget(args: &ForgetArgs) -> Result<(), Failure> {
     print(args.format, &ForgetSummary::new(&done, deletes), || match deletes {
         true => format!("deleted:\n{}{}", listed(&done), left(&done)),
         false if done.left.is_empty() => {
-            format!("there are no files of participant {code} in {}\n", args.folder.display())
+            let near = near_code(&args.folder, code);
+            format!("there are no files of participant {code} in {}{near}\n", args.folder.display())
         }
         false => format!(
             "there are no files of participant {code} that can be deleted in {}\n{}",

@@ -120,6 +120,12 @@ pub(super) fn of_participant(folder: &Path, code: &str) -> Result<Vec<PathBuf>, 
     Ok(found)
 }
 
+/// "; did you mean P07?": a participant recorded in this folder whose code is near; empty if there is none.
+pub(super) fn near_code(folder: &Path, code: &str) -> String {
+    let readers = recordings::of_folder(folder).into_iter().flatten().filter_map(|path| LogReader::open(&path).ok());
+    person_code::did_you_mean(code, readers.map(|reader| reader.header.session.participant.code))
+}
+
 /// Refuses a path that does not exist, and suggests an existing path with a similar name.
 pub(super) fn exists(path: &Path) -> Result<(), Failure> {
     let Some(near) = Some(path).filter(|path| !path.exists()).and_then(near_path::nearest) else { return Ok(()) };

@@ -8,6 +8,7 @@ use clap::Args;
 use super::choices::{ArmArg, ConditionArg, ParticipantArg, concept, gaze_parser};
 use super::failure::{Failure, wrong_setting};
 use super::lab::tell_carried;
+use super::list::chosen;
 use super::output::{put, put_aside};
 use crate::run::options::{self, DEFAULT_SESSION, SeriesRequest, SessionStart, SettingOverrides};
 use crate::run::series::{self, SeriesOutcome};
@@ -92,7 +93,8 @@ pub(super) fn operate(args: &OperateArgs) -> Result<(), Failure> {
     let done = match &args.recording {
         Some(recording) => {
             require_observers(args.flags.observe)?;
-            series::operate(SessionStart::Continued(recording.clone()), None, args.flags.observe)?
+            let recording = chosen(recording, "continue it")?;
+            series::operate(SessionStart::Continued(recording), None, args.flags.observe)?
         }
         None => new_session(args.session.as_deref(), &args.flags, None)?,
     };

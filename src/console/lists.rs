@@ -112,15 +112,14 @@ impl ListCursor {
         found
     }
 
-    /// Moves the cursor to the row whose number is typed, where nothing is typed to filter the rows.
+    /// Takes a digit where nothing is typed to filter the rows: the cursor goes to the row of that number. One without a row
+    /// begins no words of another reason.
     fn number(&mut self, rows: usize, code: KeyCode) -> bool {
-        let KeyCode::Char(digit @ '1'..='9') = code else { return false };
-        let row = usize::from(digit as u8 - b'1');
-        let is_number = self.filter.is_empty() && row < rows;
-        if is_number {
-            self.at = row;
+        let KeyCode::Char(digit @ '0'..='9') = code else { return false };
+        if self.filter.is_empty() && ('1'..='9').take(rows).any(|number| number == digit) {
+            self.at = usize::from(digit as u8 - b'1');
         }
-        is_number
+        self.filter.is_empty()
     }
 }
 

@@ -18,6 +18,7 @@ fn bytes_that_are_no_utf_8_stay_as_they_are() {
         latin.split_inclusive(|&byte| byte == b'\n').filter(|line| !line.starts_with(b"seed1-P01")).collect();
     assert_eq!(fs::read(lab.at("study/trials.csv")).expect("the table"), kept.concat());
     assert_eq!(kept.len(), 3);
+    ended(lab.forget(&["p02", "--yes"]), 1, &["no files of participant p02 in ", "did you mean P02?"]);
 }
 
 #[test]

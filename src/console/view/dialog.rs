@@ -49,8 +49,13 @@ pub fn draw(brush: &mut Painter, screen: Rect, regions: &PanelAreas, session: &S
             let presses = format!("{} of {} presses", session.all_presses(), session.spec.trial.presses);
             let abort = model.keys.chord_for(&KeyAction::Manual(ManualAction::Abort));
             let abort = abort.map_or(String::new(), |key| format!("{key} aborts it instead: then it does not count."));
-            let counts = format!("It counts with {presses}, and cannot be resumed.");
-            ask(brush, screen, "End the trial?", &[&counts, &abort], &yes);
+            let [counts, instead] = match &session.excluded {
+                Some(reason) => {
+                    [format!("It ends with {presses}, and cannot be resumed."), format!("It is excluded: {reason}.")]
+                }
+                None => [format!("It counts with {presses}, and cannot be resumed."), abort],
+            };
+            ask(brush, screen, "End the trial?", &[&counts, &instead], &yes);
         }
         Some(Dialog::EndTutorial) => {
             let lines = ["The participant does not see its other pages,", "and cannot go back to it."];

@@ -696,6 +696,8 @@ fn a_repeated_trial_keeps_the_state_of_the_display_in_the_head_line() {
         &format!("It counts with 0 of {presses} presses"),
         "aborts it instead: then it does not count",
     ]);
+    stage.at(1.0, Event::TrialExcluded { reason: "interrupted".to_string() });
+    stage.shows_everywhere(&["It is excluded: interrupted."]);
 }
 
 #[test]

@@ -57,6 +57,8 @@ fn a_trial_is_aborted_with_a_reason_and_done_again() {
     stage.shows((80, 24), &["or a reason in words", "enter choose; words can follow"]);
     stage.key(KeyCode::Char('2'));
     stage.shows((80, 24), &["» 2 technical failure"]);
+    stage.key(KeyCode::Char('9'));
+    stage.shows((80, 24), &["» 2 technical failure", "6 of 6"]);
     assert_eq!(stage.key(KeyCode::Enter), None);
     stage.shows((80, 24), &["technical failure: in words"]);
     for letter in "no power".chars() {

@@ -418,7 +418,7 @@ pub fn landmarks(recording: &Path, kinds: &[ReplayLandmark]) -> FileResult<Vec<R
         for ((number, (nth, press)), error) in (1..).zip(errors).zip(explained) {
             let coded = codes.iter().filter_map(|(rater, codes)| Some((rater, codes.0.get(&press.seq)?)));
             let coded: String = coded.map(|(rater, code)| format!("; {rater}: {}", wording::code(code))).collect();
-            let told = error.told(follower.false_beliefs.told_before(session, press.time));
+            let told = error.told(follower.false_beliefs.told_before(session, press.time, press.before));
             let words = format!("error {number}: {told}{coded}");
             add(press.time, follower.judged_until(nth), words);
         }

@@ -402,7 +402,7 @@ impl SeekableReplay {
                 if self.is_blinded {
                     return Some(format!("{}: {}", error.press, error.why));
                 }
-                Some(error.told(self.replay.follower.false_beliefs.told_before(session, now)))
+                Some(error.told(self.replay.follower.false_beliefs.told_before(session, now, error.before)))
             }
             ReplayLandmark::Signal => {
                 let follower = &self.replay.follower;

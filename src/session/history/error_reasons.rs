@@ -22,16 +22,18 @@ pub struct ExplainedError {
     pub cause: Option<String>,
     /// "costs 2 presses".
     pub cost: String,
+    /// The kitchen before the press.
+    pub before: State,
 }
 
 impl ExplainedError {
-    /// The press with its reason, then what was believed wrong, cause and cost.
+    /// The press with its reason, then cause, cost, and what was believed wrong, which is long.
     pub fn told(&self, believed: Option<String>) -> String {
         format!("{}: {}", self.press, self.told_without_press(believed))
     }
 
     pub fn told_without_press(&self, believed: Option<String>) -> String {
-        let parts = [Some(&self.why), believed.as_ref(), self.cause.as_ref(), Some(&self.cost)];
+        let parts = [Some(&self.why), self.cause.as_ref(), Some(&self.cost), believed.as_ref()];
         parts.into_iter().flatten().map(String::as_str).collect::<Vec<_>>().join("; ")
     }
 
@@ -51,6 +53,7 @@ impl ExplainedError {
                 why: Reasons { session, press, orders, earlier: &session.timeline[..until] }.why(),
                 cause: event_words::cause(&session.kitchen, press),
                 cost: event_words::cost(press),
+                before: press.before,
             }
         });
         explained.collect()

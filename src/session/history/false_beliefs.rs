@@ -4,7 +4,7 @@ use crate::history::wording;
 use crate::{Event, Session, TimestampedEvent, TrialPhase};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::recommendation::aspects_told;
-use tomcom_core::kitchen::{Agent, AspectId, Kitchen};
+use tomcom_core::kitchen::{Agent, AspectId, Kitchen, State};
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::mind::dirichlet::DirichletBelief;
 
@@ -181,15 +181,17 @@ impl EstimatedFalseBeliefs {
         self.last(aspect, |began| began <= time, |ended| ended < time)
     }
 
-    /// What was believed wrong just before a press, in words: the false beliefs that were held longest, and how many more.
-    pub fn told_before(&self, session: &Session, press: SessionTime) -> Option<String> {
+    /// What was believed wrong just before a press, in words: the false beliefs that began last, and how many more.
+    /// `before`: the kitchen before the press.
+    pub fn told_before(&self, session: &Session, press: SessionTime, before: State) -> Option<String> {
         let kitchen = &session.kitchen;
         let aspects = (0..kitchen.aspects.len()).map(|index| AspectId(index as u8));
         let mut held: Vec<&EstimatedFalseBelief> = aspects.filter_map(|aspect| self.before(aspect, press)).collect();
-        held.sort_by_key(|one| one.began);
+        held.sort_by_key(|one| std::cmp::Reverse(one.began));
         let told = held.iter().take(MOST_TOLD).map(|one| {
             let since = session.trial_clock_at(one.began);
-            format!("{}: {} since {since}", one.about, one.told(kitchen))
+            // Another order can have come since it began.
+            format!("{}: {} since {since}", wording::aspect(kitchen, before, one.aspect), one.told(kitchen))
         });
         let more = held.len().saturating_sub(MOST_TOLD);
         let more = (more > 0).then(|| format!("+{more} more"));

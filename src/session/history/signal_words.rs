@@ -62,12 +62,12 @@ pub fn sent(follower: &SessionFollower, shown: &ShownSignalRecord) -> Vec<String
     parts.into_iter().flatten().collect()
 }
 
-/// A signal with its sender, whether it was a hit, what became of it, and last what the assistant thought. `nth`: its index
+/// A signal with its sender, what became of it, whether it was a hit, and last what the assistant thought. `nth`: its index
 /// among the signals shown.
 pub fn told(follower: &SessionFollower, nth: usize) -> String {
     let mut parts = sent(follower, &follower.signals.shown[nth]);
-    parts.insert(1, judged(follower, nth));
-    parts.insert(2, outcome(follower, nth));
+    parts.insert(1, outcome(follower, nth));
+    parts.insert(2, judged(follower, nth));
     parts.retain(|part| !part.is_empty());
     parts.join("; ")
 }
@@ -75,7 +75,7 @@ pub fn told(follower: &SessionFollower, nth: usize) -> String {
 /// Whether a signal was a hit, by the participant's own beliefs, as the study counts it: "hit: no, late".
 pub fn judged(follower: &SessionFollower, nth: usize) -> String {
     match signal_verdicts(follower).and_then(|verdicts| verdicts.get(nth).copied()) {
-        Some(SignalVerdict::Hit { .. }) => "hit: yes".to_string(),
+        Some(SignalVerdict::Hit { .. }) => "hit: yes, about a false belief that led to errors".to_string(),
         Some(other) => format!("hit: no, {}", other.name()),
         None if follower.session.is_trial_over() => "hit: not known".to_string(),
         None => "hit: not known before the trial is over".to_string(),

@@ -422,7 +422,7 @@ fn a_signal_has_its_reason_as_long_as_it_is_shown_and_then_what_became_of_it() {
     let page = whole.next_back().expect("a page of the signals");
     for verdict in verdicts {
         let told = match verdict {
-            SignalVerdict::Hit { .. } => "- hit: yes\n".to_string(),
+            SignalVerdict::Hit { .. } => "- hit: yes, about a false belief that led to errors\n".to_string(),
             other => format!("- hit: no, {}\n", other.name()),
         };
         assert!(page.contains(&told), "{verdict:?}: {page}");

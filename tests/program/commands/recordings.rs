@@ -230,6 +230,10 @@ fn errors_of_a_recording_are_listed_as_commands_that_open_the_viewer_there() {
         told.lines().any(|line| line.contains(", error ") && line.contains("; believed wrong, by the estimate: ")),
         "{told}"
     );
+    // An order has one dish at a time.
+    for believed in told.lines().filter_map(|line| line.split_once("; believed wrong, by the estimate: ")) {
+        assert!(believed.1.matches("(order 1)").count() <= 1, "{believed:?}");
+    }
     // Each option lists its own only.
     let listed = list(&["--errors"]);
     assert!(listed.lines().all(|line| line.contains(", error ")), "{listed}");

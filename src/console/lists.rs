@@ -125,7 +125,7 @@ impl ListCursor {
 
 /// Whether a typed sign is part of a filter.
 fn is_typed(letter: char) -> bool {
-    letter.is_alphanumeric() || matches!(letter, '/' | '-')
+    letter.is_alphanumeric() || matches!(letter, '/' | '-' | '^')
 }
 
 /// Last entry of every list of reasons: its words are typed.

@@ -205,8 +205,8 @@ fn the_scrub_bar_and_the_timeline_seek_in_a_replay() {
             Some(ConsoleCommand::Move(ReplayAction::ToTime(time))) => time.as_secs_f64(),
             other => panic!("{other:?} at {column}, {row} of {size:?}"),
         };
-        // Above the line of keys, and two lines of messages.
-        let row = rows - 4;
+        // Above the line of keys, and two or three lines of messages.
+        let row = rows - if size == SIZES[0] { 4 } else { 5 };
         assert_eq!(seek(11, row), 0.0);
         let [early, late] = [20, 35].map(|column| seek(column, row));
         assert!(0.0 < early && early < late && late < 40.0, "{early} {late}");

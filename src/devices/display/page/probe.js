@@ -110,7 +110,8 @@ const Probe = (() => {
       head.append(...(probe.about ? [subjectOf(probe.about, kit)] : []), title);
       const isCards = probe.choices.some(({ shows }) => shows && shows.recipe), list = element("div", isCards ? "choices cards" : "choices");
       list.append(...choices.map((choice) => choiceOf(choice, kit)));
-      all.append(head, list, element("div", "row"), bar);
+      // The second try of a tutorial has no bar: what is late is not late again.
+      all.append(head, list, element("div", "row"), ...(probe.practise && probe.late ? [] : [bar]));
     }
     sheet.replaceChildren(all);
     if (!probe.closed && probe.choices.length) {

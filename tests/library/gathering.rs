@@ -472,6 +472,7 @@ fn a_list_fits_a_narrow_terminal_and_keeps_the_names_of_recordings_whole() {
     assert!(whole.contains("P02-1  (excluded: lights went out)\n"), "{whole}");
     assert_eq!(shown(68), ("code kind condition length errors state recording".to_string(), false));
     assert_eq!(shown(52), ("code kind condition state recording".to_string(), false));
+    assert_eq!(shown(42), ("code kind condition state".to_string(), false));
 }
 
 #[test]

@@ -178,11 +178,11 @@ impl ListedPlace {
         Some(ListedPlace { plan, period, periods, attempt })
     }
 
-    /// After the kind of the recording: " 2/3, attempt 2, of main-study".
+    /// After the kind of the recording: " 2/3 of main-study, attempt 2".
     fn words(&self) -> String {
         let trial = self.period.map_or(String::new(), |period| format!(" {period}/{}", self.periods));
-        let again = if self.attempt > 1 { format!(", attempt {},", self.attempt) } else { String::new() };
-        format!("{trial}{again} of {}", self.plan)
+        let again = if self.attempt > 1 { format!(", attempt {}", self.attempt) } else { String::new() };
+        format!("{trial} of {}{again}", self.plan)
     }
 }
 
@@ -223,7 +223,7 @@ impl RecordingList {
     }
 
     /// As text for a terminal of this width. Where it is too narrow, columns go in the order in which they are missed least,
-    /// and the names of recordings stay whole.
+    /// and at last the names of recordings stand below their lines.
     pub fn describe(&self, columns: u16) -> String {
         let mut rows: Vec<[String; 8]> = vec![RecordingList::HEADINGS.map(str::to_string)];
         rows.extend(self.recordings.iter().map(ListedRecording::cells));
@@ -246,6 +246,8 @@ impl RecordingList {
                 shown.retain(|(column, _)| RecordingList::HEADINGS[*column] != heading);
             }
         }
+        let below = !fits(&shown);
+        shown.retain(|(column, _)| !below || *column < rows[0].len() - 1);
         let mut text = String::new();
         for (row, one) in rows.iter().zip(std::iter::once(None).chain(self.recordings.iter().map(Some))) {
             let cells = shown.iter().map(|(column, width)| format!("{:<width$}", row[*column]));
@@ -255,7 +257,8 @@ impl RecordingList {
                 let is_short = line.chars().count() + 2 + reason.chars().count() <= usize::from(columns);
                 format!("{}{reason}", if is_short { "  " } else { "\n    " })
             });
-            text += &format!("{line}{beside}\n");
+            let name = one.filter(|_| below).map_or(String::new(), |one| format!("\n    {}", one.recording));
+            text += &format!("{line}{beside}{name}\n");
         }
         text + &format!("{} in {}\n", count(self.recordings.len() as u64, "recording", "recordings"), self.folder)
     }

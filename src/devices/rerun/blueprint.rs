@@ -30,7 +30,7 @@ pub(super) const SESSION_TIME: &str = "session_time";
 /// Durations of the gaze's trail and of its last part, in nanoseconds.
 const TRAIL_NS: i64 = 1_500_000_000;
 const RECENT_NS: i64 = 500_000_000;
-/// Durations that bars and curves show before and after the time cursor, and the room for the legend before the curves, in
+/// Durations that looks and curves show before and after the time cursor, and the room for the legend before the curves, in
 /// nanoseconds.
 const BEFORE_NS: i64 = 45_000_000_000;
 const AFTER_NS: i64 = 15_000_000_000;
@@ -267,13 +267,13 @@ fn whole(lane: &ShownRecording, name: &str, entities: &[&str], properties: &mut 
     with(lanes(lane, name, entities), "TimeAxis", &axis, properties)
 }
 
-/// Errors, signals and wrong beliefs: about the time cursor, with the looks, of which a whole trial has too many; and all.
+/// Errors, signals and wrong beliefs of the whole trial, and the looks, of which a whole trial has too many, about the time
+/// cursor.
 fn bars(lane: &ShownRecording, properties: &mut Vec<Property>) -> [ContainerLike; 2] {
-    let now = lanes(lane, "Errors, looks, signals, wrong beliefs", &["error", "look", "signal", "wrong_belief/**"]);
     let axis = TimeAxis::new().with_view_range(cursor(-BEFORE_NS, AFTER_NS));
     [
-        with(now, "TimeAxis", &axis, properties),
-        whole(lane, "Whole trial", &["error", "signal", "wrong_belief/**"], properties),
+        whole(lane, "Whole trial: errors, signals, wrong beliefs", &["error", "signal", "wrong_belief/**"], properties),
+        with(lanes(lane, "Looks", &["look"]), "TimeAxis", &axis, properties),
     ]
 }
 

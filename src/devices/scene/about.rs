@@ -38,7 +38,7 @@ const LEGEND: &str = "\
 **Colours**, as on the console: errors red, false beliefs yellow, signals, advice and the wizard violet, the human teal, the \
 robot blue, gaze and looks green. What lies in a place is brown. Buttons of the robot are blue, of the human teal, of both \
 red. A bar is grey where several are too close to be told apart: zoom in. \
-Bars are drawn about the present time; the tab beside them has the whole trial.
+Bars are of the whole trial, whatever the time; looks are drawn about the present time.
 
 **P(truth)**: lines are the estimate, \u{25c6} is what a simulated participant believes itself before a press, crosses at 0 \
 are errors. A line begins when a belief has been wrong for a second, and ends when it is known (95 %); at most six at a time.

@@ -61,7 +61,7 @@ def check_tables(tables):
     for name, table in tables.items():
         own = dictionary[dictionary.table == name]
         assert list(own.column) == list(table.columns), name
-        unsaid = own[[bool(empty) for empty in table.isna().any()] & ~own.meaning.str.contains("empty", na=False)]
+        unsaid = own[table.isna().any().to_numpy() & ~own.meaning.str.contains("empty", na=False)]
         assert name == "dictionary" or unsaid.empty, f"empty without a reason: {name} {list(unsaid.column)}"
     names = set(tables["trials"].recording)
     for name in ["actions", "communications", "beliefs", "gaze", "questionnaires", "concepts"]:

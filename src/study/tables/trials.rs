@@ -106,7 +106,7 @@ impl CsvRow for TrialStatistics {
             SEQUENCE_LENGTH.name, SEQUENCE_LENGTH.unit, SEQUENCE_LENGTH.meaning_of_trial() => (SEQUENCE_LENGTH.value)(t);
             "sequences_by_aspect", "sequences", "as sequences, which are by aspect"
                 => t.beliefs.as_ref().map(|beliefs| beliefs.lengths.len() as u64);
-            "sequence_length_by_aspect", "errors", "as sequence_length" => t.sequence_length();
+            "sequence_length_by_aspect", "errors", "as sequence_length, also where empty" => t.sequence_length();
             RECOVERY_S.name, RECOVERY_S.unit, RECOVERY_S.meaning_of_trial() => (RECOVERY_S.value)(t);
             "orders", "orders", "served orders" => t.orders;
             ORDER_S.name, ORDER_S.unit, ORDER_S.meaning_of_trial() => (ORDER_S.value)(t);

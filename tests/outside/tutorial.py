@@ -179,7 +179,7 @@ def answer(page, way, choice):
 
 
 def plays(tomcom, chromium, folder, language, way, size):
-    session = session_file(folder, seconds=3.0)
+    session = session_file(folder, seconds=8.0)
     tutorial = tomllib.loads(Path("sessions/tutorials", "sushi.de.toml" if language == "de" else "sushi.toml").read_text())
     words = tomllib.loads(Path(f"src/devices/sight/languages/{language}.toml").read_text())
     console = Console(tomcom, [session, "--language", language, "--out", folder / "recordings"], command="tutorial")

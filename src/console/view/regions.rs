@@ -62,7 +62,7 @@ pub struct PanelAreas {
 
 /// Least number of columns at which the offer and its reason fit into one line.
 const OFFER_COLUMNS: u16 = 140;
-/// A replay's message has one line for so many rows of the terminal.
+/// Number of the terminal's rows for each line of a replay's message.
 const ROWS_PER_MESSAGE_LINE: u16 = 12;
 /// Least width of the kitchen panel, in columns, at which names of usual length need no abbreviation.
 const KITCHEN_COLUMNS: u16 = 81;
@@ -106,7 +106,7 @@ struct LineRows {
     codebook: Option<[u16; 3]>,
     comparison: Option<u16>,
     scrubs: bool,
-    /// At most so many lines: what a replay says of errors and signals is longer than what a session, a training or a rater
+    /// Largest number of lines of a message: a replay says more of errors and signals than a session, a training or a rater
     /// is told.
     messages: u16,
     /// Of an offer on a narrow terminal: its reason stands in a line of its own.

@@ -200,7 +200,7 @@ impl PlanPosition {
         let ((mut before, told_before), (mut after, told_now)): ((_, BTreeMap<_, _>), (_, BTreeMap<_, _>)) =
             (settings(self), settings(now));
         let mut found = Vec::new();
-        // A recording has only what was told around its own trial, so what only the plan has is no difference.
+        // A recording keeps the texts around its own trial only: what the plan has besides is no difference.
         for (path, value) in told_before {
             match told_now.get(&path) {
                 None => found.push(PlanDifference::text(format!("{path}, which is left out"))),

@@ -104,16 +104,22 @@ impl Painter<'_> {
             return;
         }
         let (right, bottom) = (area.right() - 1, area.bottom() - 1);
+        // A frame is most of a screen's texts: its signs have one column each and need no measuring.
+        let mut put = |x, y, sign: &str| {
+            if let Some(cell) = self.buffer.cell_mut((x, y)) {
+                cell.set_symbol(sign).set_style(Style::reset().patch(style));
+            }
+        };
         for x in area.x + 1..right {
-            self.text(x, area.y, 1, signs[4], style);
-            self.text(x, bottom, 1, signs[4], style);
+            put(x, area.y, signs[4]);
+            put(x, bottom, signs[4]);
         }
         for y in area.y + 1..bottom {
-            self.text(area.x, y, 1, signs[5], style);
-            self.text(right, y, 1, signs[5], style);
+            put(area.x, y, signs[5]);
+            put(right, y, signs[5]);
         }
         for (x, y, sign) in [(area.x, area.y, 0), (right, area.y, 1), (area.x, bottom, 2), (right, bottom, 3)] {
-            self.text(x, y, 1, signs[sign], style);
+            put(x, y, signs[sign]);
         }
     }
 

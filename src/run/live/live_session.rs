@@ -43,7 +43,8 @@ use tomcom_study::analysis::trial_summary::TrialSummary;
 
 /// Period of redrawing clocks and ages on the console while the trial is running.
 const RUNNING: Duration = Duration::from_millis(100);
-const RESTING: Duration = Duration::from_millis(250);
+/// The same while it is not: what is recorded or pressed is drawn at once, and only rates and ages change without.
+const RESTING: Duration = Duration::from_secs(1);
 
 /// A running session with its recording and devices.
 pub(super) struct Live {

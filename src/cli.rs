@@ -149,7 +149,11 @@ fn show_plan(args: &PlanArgs) -> Result<(), Failure> {
         let found = "a session without a plan".to_string();
         return Err(wrong_argument(&args.session, found, "a session file with a [plan], like sessions/study.toml"));
     };
-    let figures = StudyProgress::from_study(&study, &args.out)?;
+    if let Some(frozen) = &args.frozen {
+        plan::check_frozen(&args.session, &files, frozen)?;
+        put_aside(&format!("The plan is the one that was frozen in {}.\n", frozen.display()));
+    }
+    let figures = StudyProgress::from_study(&study, &args.session, &args.out)?;
     let Some(file) = &args.freeze else {
         return print(args.format, &figures, || plan::describe(&figures, doctor::columns()));
     };

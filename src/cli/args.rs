@@ -114,6 +114,9 @@ pub(super) struct PlanArgs {
     /// new file, which tomcom study --frozen checks.
     #[arg(long, value_name = "FILE")]
     pub(super) freeze: Option<PathBuf>,
+    /// Say whether the plan is still the one that was frozen in this file, and what differs.
+    #[arg(long, value_name = "FILE", conflicts_with = "freeze")]
+    pub(super) frozen: Option<PathBuf>,
     /// Output format.
     #[arg(long, value_enum, default_value = "text")]
     pub(super) format: OutputFormat,

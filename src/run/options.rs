@@ -150,6 +150,8 @@ pub fn participant_of_plan(plan: &PlanSpec, code: Option<&str>) -> Result<usize,
 
 /// The session of commands that are given none.
 pub const DEFAULT_SESSION: &str = "sessions/default.toml";
+/// Folder of recordings, where a command line names none.
+pub const DEFAULT_OUT: &str = "sessions";
 
 /// Reads the given session file, or else that of the default session.
 ///

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::error::LiveError;
-use super::series::{recordings_of, slot_name, stands};
+use super::series::{operate_command, recordings_of, slot_name, stands};
 use crate::console::text_columns::{beside, width};
 use tomcom_core::base::text::PathText;
 use tomcom_core::base::text::count;
@@ -20,6 +20,10 @@ use tomcom_study::frozen_plan::FrozenPlan;
 /// Progress of a study: the output of `tomcom plan SESSION`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StudyProgress {
+    /// Path of the session file with the plan.
+    pub session: PathText,
+    /// Folder of the recordings.
+    pub recordings: PathText,
     /// Name of the study plan.
     pub plan: String,
     /// Checksum of the plan and its settings.
@@ -39,24 +43,26 @@ pub struct StudyProgress {
 }
 
 impl StudyProgress {
-    /// Progress of a study, computed from the recordings in the folder `out`.
+    /// Progress of a study, whose plan is in the file `session`, computed from the recordings in the folder `out`.
     ///
     /// # Errors
     /// A recording cannot be read or does not belong to the plan.
-    pub fn from_study(study: &Study, out: &Path) -> Result<StudyProgress, LiveError> {
+    pub fn from_study(study: &Study, session: &Path, out: &Path) -> Result<StudyProgress, LiveError> {
         let (made, simulated) = recordings_of(study, out)?;
         let codes = study.plan.codes();
         let progress =
             |participant| ParticipantProgress::from_recordings(study, participant, &made).map_err(LiveError::Plan);
         let participants = (0..codes.len()).map(progress).collect::<Result<Vec<_>, _>>()?;
         Ok(StudyProgress {
+            session: session.to_path_buf().into(),
+            recordings: out.to_path_buf().into(),
             plan: study.plan.name.clone(),
             digest: study.digest.clone(),
             seed: study.session.seed,
             planned: participants.len(),
             finished: participants.iter().filter(|one| one.done() == one.steps.len()).count(),
             simulated,
-            remarks: remarks(study).into_iter().chain(uncounted(made.len(), simulated, out)).collect(),
+            remarks: remarks(study).into_iter().chain(uncounted(made.len(), simulated, session, out)).collect(),
             participants,
         })
     }
@@ -71,7 +77,8 @@ fn remarks(study: &Study) -> Vec<String> {
 }
 
 /// Why recordings that somebody made may not show in the progress.
-fn uncounted(counted: usize, simulated: u64, out: &Path) -> Option<String> {
+fn uncounted(counted: usize, simulated: u64, session: &Path, out: &Path) -> Option<String> {
+    let operate = operate_command(session, out, "CODE");
     let out = out.display();
     match (counted, simulated) {
         (0, 0) => Some(format!("no recording of the plan is in {out}; --out DIR looks in another folder")),
@@ -80,8 +87,7 @@ fn uncounted(counted: usize, simulated: u64, out: &Path) -> Option<String> {
             "not counted: {}, since tomcom simulate fills no plan; {}",
             count(some, "recording of a simulated participant", "recordings of simulated participants"),
             match counted {
-                0 =>
-                    format!("tomcom study {out} analyses them, tomcom operate SESSION --code CODE records for the plan"),
+                0 => format!("tomcom study {out} analyses them, {operate} records for the plan"),
                 _ => "move them to a folder of their own".to_string(),
             }
         )),
@@ -186,10 +192,10 @@ pub fn describe(figures: &StudyProgress, columns: u16) -> String {
         *sizes.entry(one.group.as_str()).or_insert(0) += 1;
     }
     let sizes: Vec<String> = sizes.iter().map(|(group, size)| format!("{size} {group}")).collect();
-    let with_excluded = figures.participants.iter().filter(|one| one.excluded().next().is_some()).count() as u64;
-    let with_excluded = match with_excluded {
+    let finished = figures.participants.iter().filter(|one| one.done() == one.steps.len());
+    let with_excluded = match finished.filter(|one| one.excluded().next().is_some()).count() {
         0 => String::new(),
-        some => format!("; {} with an excluded trial", count(some, "participant", "participants")),
+        some => format!(" ({some} of them with an excluded trial)"),
     };
     let head = format!(
         "plan {} ({}), seed {}: {} of {} participants have done everything{with_excluded}; groups: {}\n",
@@ -210,7 +216,7 @@ pub fn describe(figures: &StudyProgress, columns: u16) -> String {
     let is_wide = figures.participants.iter().any(|one| 2 * width(&whole(one)) > columns);
     let one = |progress: &ParticipantProgress| {
         let first = if is_wide { group(progress) } else { whole(progress) };
-        let stands = stands(progress);
+        let stands = stands(progress, &figures.session, &figures.recordings);
         let stands = stands.split_once(": ").map_or(stands.as_str(), |(_, stands)| stands);
         let attempts = attempts(progress);
         let attempts = attempts.lines().map(|line| beside("", line, 6, columns));

@@ -8,7 +8,7 @@ use super::error::{LiveError, TerminalError};
 use super::leaving::{LeavingReason, LiveOutcome};
 use super::live;
 use super::operator_station::OperatorStation;
-use super::options::{SeriesRequest, SessionStart};
+use super::options::{DEFAULT_OUT, SeriesRequest, SessionStart};
 use super::resume::PreparedSession;
 use super::start_prompt::{ask, ask_consent};
 use crate::console::lists::StartPrompt;
@@ -125,6 +125,10 @@ impl Planned {
         Ok((progress(self.series.participant).map_err(LiveError::Plan)?, (finished, all)))
     }
 
+    fn stands(&self, progress: &ParticipantProgress) -> String {
+        stands(progress, &self.series.files.path, &self.series.out)
+    }
+
     /// The question whether a recording is meant, where others in the folder are of another version of the plan.
     fn changed(&self, made: &[PlanRecording], code: &str) -> Result<Option<StartPrompt>, LiveError> {
         let others: Vec<&PlanRecording> = made.iter().filter(|made| made.step.digest != self.study.digest).collect();
@@ -173,19 +177,19 @@ impl Planned {
         let mut done = Vec::new();
         let (mut progress, mut participants) = self.progress()?;
         if progress.next == NextRecording::Finished && progress.excluded().next().is_none() {
-            return Ok(SeriesOutcome { done, remark: Some(stands(&progress)) });
+            return Ok(SeriesOutcome { done, remark: Some(self.stands(&progress)) });
         }
         let SeriesRequest { files, observe, .. } = &self.series;
         let mut station = OperatorStation::take(&files.spec, &files.kitchen.kitchen, *observe).await?;
         if self.series.files.spec.participant.kind == ParticipantKind::Simulated
             && ask(&mut station, rehearsal(&progress, &self.series.out)).await? != Some(0)
         {
-            return Ok(SeriesOutcome { done, remark: Some(stands(&progress)) });
+            return Ok(SeriesOutcome { done, remark: Some(self.stands(&progress)) });
         }
         let (made, _) = recordings_of(&self.study, &self.series.out)?;
         for question in [self.changed(&made, &code)?, self.other_kind(&made, &code)?].into_iter().flatten() {
             if ask(&mut station, question).await? != Some(0) {
-                return Ok(SeriesOutcome { done, remark: Some(stands(&progress)) });
+                return Ok(SeriesOutcome { done, remark: Some(self.stands(&progress)) });
             }
         }
         let excluded: Vec<usize> = progress.excluded().map(|(slot, _)| slot).collect();
@@ -193,14 +197,14 @@ impl Planned {
             match ask(&mut station, repeat(&progress)).await? {
                 Some(0) => {}
                 Some(index) => progress.redo(excluded.get(index - 1).copied()),
-                None => return Ok(SeriesOutcome { done, remark: Some(stands(&progress)) }),
+                None => return Ok(SeriesOutcome { done, remark: Some(self.stands(&progress)) }),
             }
         }
         while progress.next != NextRecording::Finished {
             let begun = match self.choose(&progress, &mut station).await? {
                 Choice::Begin(begun) => begun.in_study(participants, is_last(&progress)),
                 Choice::Leave(remark) => {
-                    let remark = remark.unwrap_or_else(|| stands(&progress));
+                    let remark = remark.unwrap_or_else(|| self.stands(&progress));
                     return Ok(SeriesOutcome { done, remark: Some(remark) });
                 }
             };
@@ -214,7 +218,7 @@ impl Planned {
                 LeavingReason::Redo => progress.redo(slot),
             }
         }
-        Ok(SeriesOutcome { done, remark: Some(stands(&progress)) })
+        Ok(SeriesOutcome { done, remark: Some(self.stands(&progress)) })
     }
 
     /// Prepares the next recording of the series, after asking the wizard the questions that come before it.
@@ -362,12 +366,14 @@ pub(super) fn slot_name(progress: &ParticipantProgress, slot: usize) -> String {
     }
 }
 
-/// Progress of a participant through the study plan, in one line.
-pub(super) fn stands(progress: &ParticipantProgress) -> String {
+/// Progress of a participant through the study plan, in one line; `session`: the plan's file, `out`: the recordings'
+/// folder.
+pub(super) fn stands(progress: &ParticipantProgress, session: &Path, out: &Path) -> String {
     let (code, done, all) = (&progress.code, progress.done(), progress.steps.len());
+    let operate = operate_command(session, out, code);
     let excluded = match progress.excluded().count() {
         0 => String::new(),
-        excluded => format!(", {excluded} excluded: repeat with tomcom operate SESSION --code {code}"),
+        excluded => format!(", {excluded} excluded: repeat with {operate}"),
     };
     let stand = match &progress.next {
         NextRecording::Finished if !progress.has_counting_trial() => {
@@ -382,15 +388,22 @@ pub(super) fn stands(progress: &ParticipantProgress) -> String {
         }
         NextRecording::Choose { slot, recording, .. } => {
             let slot = slot_name(progress, *slot);
-            format!(
-                "{code}: {done} of {all} done, {slot} is unfinished in {recording}: go on with tomcom operate SESSION --code {code}"
-            )
+            format!("{code}: {done} of {all} done, {slot} is unfinished in {recording}: go on with {operate}")
         }
         NextRecording::Running { slot, recording } => {
             format!("{code}: {done} of {all} done, {} is being recorded in {recording}", slot_name(progress, *slot))
         }
     };
     stand + &excluded
+}
+
+/// The command that records a participant of a plan.
+pub(super) fn operate_command(session: &Path, out: &Path, code: &str) -> String {
+    let out = match out.to_str() {
+        Some(DEFAULT_OUT) => String::new(),
+        _ => format!(" --out {}", out.display()),
+    };
+    format!("tomcom operate {} --code {code}{out}", session.display())
 }
 
 /// The recordings of a study in the folder `out`, and the number of simulated ones.

@@ -37,10 +37,22 @@ pub fn did_you_mean<Code: AsRef<str>>(mistyped: &str, codes: impl IntoIterator<I
     text::did_you_mean(mistyped, codes.into_iter().filter(|code| digits(code.as_ref()) == digits(mistyped)))
 }
 
-/// "A1, B2"; of many the first and the last, and how many there are: "P01 to P14 (14)".
+/// "A1, B2"; of many that are numbered the first and the last, "P01 to P14 (14)", of others some: "A1, B2, … (14)".
 pub fn listed(codes: &[String]) -> String {
+    const FEW: usize = 6;
+    let numbered = |code: &String| {
+        let name = code.trim_end_matches(|sign: char| sign.is_ascii_digit());
+        Some((name.to_string(), code[name.len()..].parse::<u64>().ok()?))
+    };
+    let follow = |pair: &[String]| match (numbered(&pair[0]), numbered(&pair[1])) {
+        (Some((name, number)), Some(next)) => next == (name, number + 1),
+        _ => false,
+    };
     match codes {
-        [first, _, _, _, _, _, .., last] => format!("{first} to {last} ({})", codes.len()),
+        [first, .., last] if codes.len() > FEW && codes.windows(2).all(follow) => {
+            format!("{first} to {last} ({})", codes.len())
+        }
+        many if many.len() > FEW => format!("{}, … ({})", many[..FEW].join(", "), many.len()),
         few => few.join(", "),
     }
 }

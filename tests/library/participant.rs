@@ -6,7 +6,7 @@ use serde::Deserialize;
 use tomcom_core::measures::attribution::ErrorCause;
 use tomcom_session::files::parse::parse;
 use tomcom_session::headless;
-use tomcom_session::person_code::{differing_in_case, fault, without_seed};
+use tomcom_session::person_code::{differing_in_case, fault, listed, without_seed};
 
 use crate::support::*;
 
@@ -222,4 +222,12 @@ fn the_seed_before_a_code_is_told_apart() {
     assert_eq!(without_seed("seed7-S001"), Some("S001"));
     assert_eq!(without_seed("seed-S001"), None);
     assert_eq!(without_seed("seedling-7"), None);
+}
+
+#[test]
+fn only_codes_that_are_numbered_are_listed_as_a_range() {
+    let codes = |text: &str| listed(&text.split(' ').map(str::to_string).collect::<Vec<_>>());
+    assert_eq!(codes("P01 P02 P03 P04 P05 P06 P07"), "P01 to P07 (7)");
+    assert_eq!(codes("P01 P02 P03 P04 P05 P06 P08"), "P01, P02, P03, P04, P05, P06, … (7)");
+    assert_eq!(codes("ada P02"), "ada, P02");
 }

@@ -114,8 +114,12 @@ fn a_plan_is_frozen_once_and_the_study_says_whether_it_is_that_one() {
         let line = session.lines().position(|line| line.starts_with(before)).expect("a setting") + 1;
         for told in [format!("short.toml:{line}: found {now}"), format!("{before}, as it was frozen")] {
             refused(&["operate", &plan, "--code", "P01", "--frozen", &file], &told);
+            refused(&["plan", &plan, "--out", &out, "--frozen", &file], &told);
         }
     }
+    fs::write(&plan, &session).expect("written");
+    let output = tomcom(&["plan", &plan, "--out", &out, "--frozen", &file]);
+    assert!(output.status.success() && String::from_utf8_lossy(&output.stderr).contains("is the one that was frozen"));
     // What differs is told setting by setting, also of recordings under another version.
     fs::write(&plan, session.replacen("presses = 40", "presses = 41", 1)).expect("written");
     let others = at("others");

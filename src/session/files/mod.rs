@@ -36,6 +36,8 @@ use tomcom_people::wizard::WizardKind;
 /// A session's settings with the kitchen and all other files that they name.
 #[derive(Clone, Debug)]
 pub struct SessionSetup {
+    /// Path of the session file.
+    pub path: PathBuf,
     pub spec: SessionSpec,
     pub kitchen: KitchenWithSources,
     /// Key bindings of the console.
@@ -107,7 +109,7 @@ pub fn read_session(path: &Path, language: Option<&str>) -> FileResult<SessionSe
     kitchen.layout.path.clone_from(&spec.layout);
     spec.check_kitchen(&kitchen.kitchen).map_err(|error| wrong_setting(path, &text, error))?;
     let tutorial = read_tutorial(path, &text, &spec, &kitchen.kitchen)?;
-    Ok(SessionSetup { spec, kitchen, keys, questionnaires, tutorial })
+    Ok(SessionSetup { path: path.to_path_buf(), spec, kitchen, keys, questionnaires, tutorial })
 }
 
 fn read_keys(session: &Path, text: &str, spec: &SessionSpec) -> FileResult<Option<RecordedFile>> {

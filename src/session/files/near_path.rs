@@ -6,10 +6,18 @@ use std::path::{Component, Path, PathBuf};
 use crate::files::carried;
 use tomcom_core::base::text;
 
+/// Where session files and recordings usually are.
+const SESSIONS: &str = "sessions";
+
 /// The existing or carried path that is nearest to a path that does not exist: each missing name is replaced by the most
-/// similar existing name. `None` if there is no similar path, or the path exists.
+/// similar existing name, and a mere name is also looked for in `sessions/`. `None` if there is no similar path, or the
+/// path exists.
 pub fn nearest(path: &Path) -> Option<PathBuf> {
-    existing(path).or_else(|| carried::nearest(path))
+    let in_sessions = || {
+        Some(Path::new(SESSIONS).join(path))
+            .filter(|there| path.file_name() == Some(path.as_os_str()) && there.exists())
+    };
+    existing(path).or_else(in_sessions).or_else(|| carried::nearest(path))
 }
 
 /// "; did you mean FILE?", with the path from a folder as the user would write it; empty if no path is near.

@@ -321,6 +321,13 @@ fn describe_pair(pair: &SenderPairSummary) -> String {
         format!("{what:<24}{window:>7}{recall:>8}{chance:>8}{precision:>11}{f1:>6}")
     };
     let what = format!("{}, {}", pair.of, pair.with);
+    if found.of_n == 0 {
+        // All shares would be 0, which reads as if somebody had been wrong.
+        return format!(
+            "{what:<24}{:>7}  nothing to compare: 0 from {}, {} said\n",
+            pair.window_actions, pair.of, found.with_n
+        );
+    }
     let signal = line(&what, &pair.window_actions.to_string(), found.signal);
     let kappa = number(found.kappa);
     let said = format!("{} of {} matched, {} said", found.matched, found.of_n, found.with_n);

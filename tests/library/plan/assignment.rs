@@ -1,5 +1,7 @@
 //! Who comes under which condition with which orders, and what comes next whatever was recorded.
 
+use std::path::Path;
+
 use tomcom::run::plan::{StudyProgress, describe};
 use tomcom_session::orders::OrderList;
 use tomcom_session::plan::{
@@ -284,7 +286,8 @@ fn practice_has_no_probes_and_may_be_shorter_than_they_need() {
 #[test]
 fn a_plan_fits_a_narrow_terminal_with_letters_for_its_conditions() {
     let study = session_file("all-arms").study().expect("a plan");
-    let figures = StudyProgress::from_study(&study, &folder("narrow")).expect("an empty folder");
+    let figures =
+        StudyProgress::from_study(&study, Path::new("plan.toml"), &folder("narrow")).expect("an empty folder");
     // The folder's path may be long.
     let figures = StudyProgress { remarks: Vec::new(), ..figures };
     let titles = study.plan.conditions.iter().map(|arm| arm.title());

@@ -434,6 +434,7 @@ fn a_press_without_effect_says_why_unless_the_session_switches_that_off() {
         ("shape", Some("hand_empty")),
         ("serve 2", Some("place_empty")),
         ("take rice", None),
+        ("shape", Some("needs_other_step")),
         ("take nori", Some("hand_full")),
         ("rolling_mat", Some("not_accepted")),
         ("cooking_pot", None),
@@ -441,8 +442,9 @@ fn a_press_without_effect_says_why_unless_the_session_switches_that_off() {
         ("cooking_pot", Some("place_full")),
         ("cutting_board", None),
         ("cook", None),
-        ("cook", Some("not_processed")),
+        ("cook", Some("already_processed")),
         ("take nori", None),
+        ("shape", Some("not_processed")),
         ("assembly_board", None),
         ("take nori", None),
         ("assembly_board", Some("not_stacked")),
@@ -466,11 +468,12 @@ fn every_language_has_a_line_for_every_reason_that_names_no_content() {
         let spec = DisplaySpec { language: language.to_string(), ..DisplaySpec::default() };
         let mut lines = DisplayWords::for_display(&spec).of_page();
         lines.retain(|key, _| key.starts_with("why "));
-        assert_eq!(lines.len(), 12, "{language}");
+        assert_eq!(lines.len(), 13, "{language}");
         assert!(lines.values().all(|line| line.chars().count() <= 50 && line.ends_with(['.', '。'])), "{lines:?}");
         lines.retain(|_, line| !line.contains('#'));
-        let hands = ["why hand_empty", "why hand_full", "why not_processed human_hand"];
-        assert!(lines.keys().eq(hands), "{language}: reasons without their place: {lines:?}");
+        let placeless = ["already_processed", "hand_empty", "hand_full", "needs_other_step", "not_processed"];
+        let placeless = placeless.map(|reason| format!("why {reason}"));
+        assert!(lines.keys().eq(&placeless), "{language}: reasons without their place: {lines:?}");
     }
 }
 
@@ -517,15 +520,20 @@ fn the_page_says_that_the_robot_is_stopped_also_where_a_real_one_stands() {
 }
 
 #[test]
-fn the_page_says_nothing_about_hands() {
+fn the_page_says_that_the_robot_is_slow_or_waits_and_nothing_about_hands() {
     let mut engine = engine(files("sessions/default.toml"));
     assert_eq!(engine.input(engine.session().time, Event::TrialStarted).refused, None);
     assert!(engine.session().robot.intention.is_some(), "it has set out");
-    for (mode, says) in [(SafetyMode::Reduced, Value::Null), (SafetyMode::Safeguard, Value::from("waits"))] {
-        let mut session = engine.session().clone();
+    let says = |session: &Session, mode| {
+        let mut session = session.clone();
         session.robot.arm.mode = mode;
-        assert_eq!(serde_json::to_value(sight(&session)).expect("a sight is JSON")["robot_does"], says, "{mode:?}");
-    }
+        serde_json::to_value(sight(&session)).expect("a sight is JSON")["robot_does"].clone()
+    };
+    assert_eq!(says(engine.session(), SafetyMode::Reduced), "slow");
+    assert_eq!(says(engine.session(), SafetyMode::Safeguard), "waits");
+    assert_eq!(says(engine.session(), SafetyMode::Normal), Value::Null);
+    assert_eq!(engine.input(engine.session().time, Event::TrialPaused).refused, None);
+    assert_eq!(says(engine.session(), SafetyMode::Reduced), Value::Null, "in a pause the arm rests");
 }
 
 #[test]

@@ -114,16 +114,9 @@ MEASURE = """([states, DISTANCE_M, NEAR_EM]) => Object.entries(states).map(([nam
   }
   const open = document.querySelector(".recipe.open"), theirs = document.querySelector(".zone.robot");
   if (open && meets(box(open), box(theirs))) found.push("the recipe hides the robot's side");
-  // Buttons of a card stand in it, and a line about no place over none of its edges.
+  // Buttons of a card stand in it.
   for (const made of document.querySelectorAll(".sheet.open .card button:not(.given *)")) {
     if (isSeen(made) && !inside(box(made), box(made.closest(".card")))) found.push(`${made.textContent} leaves the card`);
-  }
-  if (card) {
-    Stage.say("nothing");
-    const said = document.querySelector(".why.says");
-    if (!said || (meets(box(said), box(card)) && !inside(box(said), box(card)))) found.push("a line stands over the edge of the card, or is not there");
-    for (const text of texts) if (said && card.contains(text.made) && meets(box(said), text)) found.push(`a line about no place hides "${text.said}"`);
-    Stage.say("");
   }
   const ruler = document.createElement("canvas").getContext("2d");
   const minutes = Object.fromEntries(texts.map(({ made, said }) => {
@@ -140,6 +133,15 @@ MEASURE = """([states, DISTANCE_M, NEAR_EM]) => Object.entries(states).map(([nam
     ruler.font = `${fontWeight} 100px ${fontFamily}`;
     return [`"${said}"`, (ruler.measureText("H").actualBoundingBoxAscent / 100) * parseFloat(fontSize)];
   }));
+  // A line about no place stands over no card's edge, and hides no text. It takes the place of a reason, which is measured above.
+  if (card || (sight.stage === "running" && !open)) {
+    const others = texts.filter(({ made }) => (card ? card.contains(made) : !made.closest(".why, .toast")));
+    Stage.say("nothing");
+    const said = document.querySelector(".why.says");
+    if (!said || (card && meets(box(said), box(card)) && !inside(box(said), box(card)))) found.push("a line stands over the edge of the card, or is not there");
+    for (const text of others) if (said && meets(box(said), text)) found.push(`a line about no place hides "${text.said}"`);
+    Stage.say("");
+  }
   const labels = [...document.querySelectorAll("#stage [aria-label]")].map((made) => made.getAttribute("aria-label"));
   const [choice] = [...document.querySelectorAll(".probing .choice")].map(box);
   return { name, found: [...new Set(found)], minutes, least, lowest, choice: choice && [choice.left, choice.top], said: [...texts.map(({ said }) => said), ...labels] };

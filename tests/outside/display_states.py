@@ -219,7 +219,7 @@ def states(scene, kitchen):
     trashed = {"number": 1, "at": {"location": at["robot_hand"]}, "effective": True}
     made["robot: discards"] = sight(presses=[None, trashed], contents=["empty" if spot["name"] == "robot_hand" else what for spot, what in zip(spots, contents(0))])
     made["empty"] = sight(contents=["empty"] * len(spots), served=0)
-    for what in ("waits_human", "waits_order", "waits", "stopped"):
+    for what in ("waits_human", "waits_order", "waits", "slow", "stopped"):
         made[f"robot: {what}"] = sight(robot_does=what)
     for index, spot in enumerate(spots):
         if spot["kind"] != "order":

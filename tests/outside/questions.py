@@ -238,6 +238,8 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
             return !made.textContent.includes(" ") && range.getClientRects().length > 1;
         }).map((made) => made.textContent)""")
         assert not broken, broken
+        # A point of a scale has its number.
+        assert page.ask("document.querySelector('[data-review=\"robots\"] .point em').textContent") == "2"
         # Who left an item out sees that; a row goes back to its item, and "Next" from there to all answers.
         assert page.ask("document.querySelector('.given .none').textContent === Stage.scene().words.skip")
         click('[data-review="age"]')

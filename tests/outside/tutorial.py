@@ -66,7 +66,7 @@ def verdict(page):
 
 def checks_what_is_missing(page, way, step, words):
     """Whoever tries to go on too early is told what is missing. A gamepad's cross is a button of the kitchen while presses are asked for."""
-    missing = {"press": "press", "order": "press", "question": "question", "recipes": "recipes"}.get(step["kind"])
+    missing = {"press": "press", "order": "press", "question": "question", "recipes": "recipes", "robot_says": "robot"}.get(step["kind"])
     if missing and not (way == "gamepad" and missing == "press"):
         turn(page, way)
         page.wait_for("document.querySelector('.lesson .verdict.line').textContent")
@@ -113,6 +113,7 @@ def checks_the_robot_moves(page):
     where = "document.querySelector('.robot-hand').dataset.x"
     before = page.ask(where)
     page.wait_for(f"{where} !== '{before}' && getComputedStyle(document.querySelector('.robot-hand')).visibility === 'visible'")
+    assert page.ask("document.querySelector('.lesson .next[aria-disabled]') || [...document.querySelectorAll('.spot.place')].some((made) => made.dataset.holds === 'item')"), "one can go on before the robot has shown it"
     page.wait_for("[...document.querySelectorAll('.spot.place')].some((made) => made.dataset.holds === 'item')")
 
 
@@ -158,7 +159,8 @@ def checks_the_step_before(page, way, words):
 
 
 def go_on(page, way, step):
-    page.wait_for(f"Stage.shown().tutorial && Stage.shown().tutorial.step === {json.dumps(step)} && Stage.shown().tutorial.done")
+    # What the robot shows must have been shown once.
+    page.wait_for(f"Stage.shown().tutorial && Stage.shown().tutorial.step === {json.dumps(step)} && Stage.shown().tutorial.done && !document.querySelector('.lesson .next[aria-disabled]')")
     if way == "gamepad" and len(step) % 2:
         # The button that goes on, and not the cross.
         page.push(0)

@@ -146,7 +146,12 @@ pub enum NoEffectReason {
     NotAccepted,
     /// No effect because the content of the hand cannot be stacked on the content of the place.
     NotStacked,
-    /// No effect because the content of the place cannot be processed in this way.
+    /// No effect because the content of the place was processed in this way already.
+    AlreadyProcessed,
+    /// No effect because the content of the place can be processed in this way only after another step. The reason does
+    /// not say which step.
+    NeedsOtherStep,
+    /// No effect because the content of the place is never processed in this way.
     NotProcessed,
     /// No effect because the order location shows no order.
     NoOrder,
@@ -178,7 +183,7 @@ impl Kitchen {
                 match is_empty(place) {
                     true if place == hand => (NoEffectReason::HandEmpty, hand),
                     true => (NoEffectReason::PlaceEmpty, place),
-                    false => (NoEffectReason::NotProcessed, place),
+                    false => (self.not_processed(process, state.content(place)), place),
                 }
             }
             ButtonAction::Serve(order) => match (state.order(order), is_empty(self.plate)) {
@@ -187,5 +192,33 @@ impl Kitchen {
                 (OrderContent::Dish(_), false) => (NoEffectReason::NotServed, order),
             },
         })
+    }
+
+    /// Why this processing step, which does not apply to the content, does not.
+    fn not_processed(&self, process: u8, content: ContentId) -> NoEffectReason {
+        let steps = &self.processes[usize::from(process)].steps;
+        let made = self.made_of(content);
+        if steps.iter().any(|&(_, to)| self.made_of(to).contains(&content)) {
+            NoEffectReason::AlreadyProcessed
+        } else if steps.iter().any(|(from, _)| made.contains(from)) {
+            NoEffectReason::NeedsOtherStep
+        } else {
+            NoEffectReason::NotProcessed
+        }
+    }
+
+    /// This content, and all that processing steps make of it, one after another.
+    fn made_of(&self, content: ContentId) -> Vec<ContentId> {
+        let mut made = vec![content];
+        let mut at = 0;
+        while let Some(&from) = made.get(at) {
+            for &(_, to) in self.processes.iter().flat_map(|process| &process.steps).filter(|step| step.0 == from) {
+                if !made.contains(&to) {
+                    made.push(to);
+                }
+            }
+            at += 1;
+        }
+        made
     }
 }

@@ -75,6 +75,8 @@ pub enum RobotActivity {
     WaitsOrder,
     /// For a while, whatever the human does: somebody holds it, or it leaves out what it would press.
     Waits,
+    /// It moves at reduced speed.
+    Slow,
     /// Until the wizard releases it.
     Stopped,
 }
@@ -178,13 +180,16 @@ fn robot_does(session: &Session) -> Option<RobotActivity> {
     if session.spec.display.arm == RobotDepiction::None {
         return None;
     }
-    // Nothing is said about hands: nobody measures them, and the page's places are not those of the robot's table.
+    // Nothing is said about hands, for which it slows or waits: nobody measures them, and the page's places are not
+    // those of the robot's table.
     let is_blocked = robot.intention.is_some() && robot.arm.mode == SafetyMode::Safeguard;
     match robot.idle.as_ref().map(|(reason, _)| reason) {
         _ if robot.held && robot.driven_to.is_none() || is_blocked => Some(RobotActivity::Waits),
         Some(IdleReason::HumanTurn) => Some(RobotActivity::WaitsHuman),
         Some(IdleReason::NoOrder) => Some(RobotActivity::WaitsOrder),
         Some(IdleReason::Skipped) => Some(RobotActivity::Waits),
+        // In a pause the arm rests.
+        None if robot.arm.mode == SafetyMode::Reduced && session.is_running() => Some(RobotActivity::Slow),
         None => None,
     }
 }

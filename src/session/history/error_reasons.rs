@@ -77,9 +77,7 @@ impl Reasons<'_> {
         let action = kitchen.button(Agent::Human, self.press.button).action;
         match kitchen.no_effect(state, Agent::Human, self.press.button) {
             Some((NoEffectReason::NotServed, order)) => return not_served(kitchen, state, orders, order),
-            Some((NoEffectReason::NotProcessed, place)) if let Some(told) = self.processed_already(action, place) => {
-                return told;
-            }
+            Some((NoEffectReason::AlreadyProcessed, place)) => return self.processed_already(place),
             Some((why, about)) => return wording::because(kitchen, why, about, kitchen.content_label(state, about)),
             None => {}
         }
@@ -109,13 +107,9 @@ impl Reasons<'_> {
 
     /// That the place holds already what the press was to make, and who made it when: "it is cut tuna already, by the robot
     /// 2 s ago".
-    fn processed_already(&self, action: ButtonAction, place: LocationId) -> Option<String> {
-        let ButtonAction::Process(process) = action else { return None };
+    fn processed_already(&self, place: LocationId) -> String {
         let kitchen = &self.session.kitchen;
         let made = self.press.before.content(place);
-        if !kitchen.processes[usize::from(process)].steps.iter().any(|&(_, to)| to == made) {
-            return None;
-        }
         let came = self.earlier.iter().rev().find_map(|entry| match entry.what {
             TimelineEvent::Press { agent, button, before, after, .. }
                 if after.content(place) == made && before.content(place) != made =>
@@ -134,7 +128,7 @@ impl Reasons<'_> {
             }
             _ => String::new(),
         };
-        Some(format!("it is {} already{by}", word(kitchen, made)))
+        format!("it is {} already{by}", word(kitchen, made))
     }
 }
 

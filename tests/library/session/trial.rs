@@ -258,7 +258,7 @@ fn an_error_is_explained_by_what_the_orders_need() {
     let cut = [(Human, "take salmon"), (Human, "cutting_board"), (Robot, "cut"), (Human, "cut")];
     check(&["salmon nigiri"], &cut, "it is cut salmon already, by the robot 5 s ago");
     let raw = [(Human, "take shrimp"), (Human, "cutting_board"), (Human, "cut")];
-    check(&["shrimp nigiri"], &raw, "raw shrimp cannot be processed there");
+    check(&["shrimp nigiri"], &raw, "raw shrimp needs another step first");
     let dish = [
         rice.as_slice(),
         &[(Human, "shape"), (Human, "assembly_board"), (Human, "take nori"), (Human, "assembly_board")],

@@ -79,7 +79,7 @@ const Questions = (() => {
     if (point === null || !["scale", "slider"].includes(form?.kind)) return null;
     const made = element("b", "point"), line = element("u", ""), of = form.kind === "scale" ? form.points - 1 : SLIDER_END;
     if (form.kind === "scale") for (let at = 0; at <= of; at += 1) line.append(Object.assign(element("i", ""), { style: `left: ${(100 * at) / of}%` }));
-    line.append(Object.assign(element("em", ""), { style: `left: ${(100 * (form.kind === "scale" ? point - 1 : point)) / of}%` }));
+    line.append(Object.assign(text("em", "", form.kind === "scale" ? point : ""), { style: `left: ${(100 * (form.kind === "scale" ? point - 1 : point)) / of}%` }));
     made.append(text("span", "", form.low), line, text("span", "", form.high));
     made.setAttribute("aria-label", `${form.low}, ${form.high}: ${point}`);
     made.setAttribute("role", "img");
@@ -120,7 +120,7 @@ const Questions = (() => {
         made.dataset.rate = point;
         scale.append(made);
       }
-      return [anchored(scale, form.low, form.high, kit)];
+      return [anchored(scale, form.low, form.high, kit), kit.text("p", "hint", words.digits)];
     },
     choice({ form, answer }, words, { element, text }) {
       const list = element("div", form.options.length > 5 ? "options many" : "options");
@@ -130,7 +130,7 @@ const Questions = (() => {
         made.dataset.option = id;
         list.append(made);
       });
-      return form.several ? [list, text("p", "hint", words.several)] : [list];
+      return [list, text("p", "hint", form.several ? words.several : words.digits)];
     },
     number(question, words, { element, text }) {
       const { form, answer } = question, value = pending(question) ?? String(answer ?? "");

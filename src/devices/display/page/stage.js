@@ -451,11 +451,11 @@ const Stage = (() => {
   // What is to be pressed or answered now, or what goes on.
   const DOES = ".hinted, .scale, .slider, .options, .number, textarea, .choosing, .probing .choices, .lesson .choices, .lesson .next, .turns .confirm";
 
-  /** Says something that is about no place, near what can be done; nothing takes back what was said. */
+  /** Says something that is about no place: near what can be done, in a trial where other texts open; nothing takes back what was said. */
   function say(name) {
     if (!shown || !marks.acts) return;
     const does = [...root.querySelectorAll(DOES)].find((made) => made.checkVisibility({ visibilityProperty: true }));
-    Reason.say(name ? scene.words[name] : "", does, root, { room, put, replay, text });
+    Reason.say(name ? scene.words[name] : "", does, shown.stage === "running" ? parts.free : undefined, root, { room, put, replay, text });
   }
 
   /** What was pressed does nothing, or, where it is one of the kitchen's buttons, nothing yet. */

@@ -9,8 +9,11 @@ const Tutorial = (() => {
   // A press of the robot: the way there, the press, and the rest after it; the hand is down at the end of its way.
   const WAY_MS = 1600, REST_MS = 700, DOWN_FROM = 0.8, FRAME_MS = 33;
   // What the robot's side can say, and how long each is shown.
-  const SAYINGS = ["waits_human", "waits_order", "waits", "stopped"], SAYING_MS = 2500;
+  const SAYINGS = ["waits_human", "waits_order", "waits", "slow", "stopped"], SAYING_MS = 2500;
   let mover = 0, sayer = 0, rested = null;
+  // Steps in which the robot showed all of it once, and the one in which it does so for the first time.
+  const watched = new Set();
+  let showing = null;
   // Whether the question of a probe is practised now.
   let tries = false;
   let timer = 0, ticker = 0, hinter = 0, shownStep = "", endsAt = 0, told = () => {}, marked = [], drawn = null;
@@ -83,21 +86,42 @@ const Tutorial = (() => {
     sayer = 0;
     document.getElementById("stage").classList.remove("moves");
     if (rested) Robot.move(rested);
-    rested = null;
+    rested = showing = null;
+  }
+
+  /** Whether one can go on: what the robot shows must have been shown once. */
+  const isDone = ({ done, step }) => done && showing !== step;
+
+  /** The robot begins to show something. */
+  function begins({ step }) {
+    if (!watched.has(step)) showing = step;
+  }
+
+  /** It showed all of it once: one can go on. */
+  function finish({ step }) {
+    watched.add(step);
+    if (showing !== step) return;
+    showing = null;
+    draw(drawn.sheet, drawn.page, drawn.kit);
   }
 
   /** Lets the robot's hand press one button after another, from the beginning again when all are pressed; or its side say one thing after another. */
-  function demonstrate({ kind, robot }, kit) {
-    const before = rested || Robot.pose();
+  function demonstrate(page, kit) {
+    const { kind, robot } = page, before = rested || Robot.pose();
     rest();
     if (kind === "robot_says") {
       let said = 0;
-      const say = () => kit.sayOfRobot(SAYINGS[said++ % SAYINGS.length]);
+      const say = () => {
+        kit.sayOfRobot(SAYINGS[said++ % SAYINGS.length]);
+        if (said === SAYINGS.length) finish(page);
+      };
+      begins(page);
       say();
       sayer = setInterval(say, SAYING_MS);
     }
     if (!robot.length || !before) return;
     rested = before;
+    begins(page);
     document.getElementById("stage").classList.add("moves");
     const start = performance.now();
     let pressed = -1;
@@ -109,6 +133,7 @@ const Tutorial = (() => {
       const now = nth + (share === 1 ? 1 : 0);
       if (now !== pressed) kit.draws(now ? robot[now - 1].contents : kit.contents);
       pressed = now;
+      if (now === robot.length || turn >= robot.length) finish(page);
     }, FRAME_MS);
   }
 
@@ -153,7 +178,7 @@ const Tutorial = (() => {
     if (page.kind === "probe") return page.missed ? ["tutorial probe wrong", "wrong"] : page.done ? ["tutorial right", "right"] : ["", ""];
     const all = page.presses && page.presses[0] === page.presses[1];
     if (isAsked && page.question && page.question.wrong !== null) return ["tutorial other answer", "wrong"];
-    if (isAsked) return [`tutorial first ${page.presses ? "press" : page.question ? "question" : "recipes"}`, "wrong"];
+    if (isAsked) return [`tutorial first ${page.presses ? "press" : page.question ? "question" : showing ? "robot" : "recipes"}`, "wrong"];
     if (all) return ["tutorial right", "right"];
     return page.presses && page.done ? ["tutorial again", ""] : ["", ""];
   }
@@ -182,7 +207,7 @@ const Tutorial = (() => {
     };
     if (page.number > 1) button("back", words.back, true);
     const onward = page.number === page.of ? words["tutorial end"] : words.next;
-    button("next", page.probe ? words["tutorial try"] : onward, page.done || page.probe);
+    button("next", page.probe ? words["tutorial try"] : onward, isDone(page) || page.probe);
     return row;
   }
 
@@ -192,6 +217,7 @@ const Tutorial = (() => {
     // The explanation is not known before it is needed; its length is. Few letters are as wide as these, and few words as long, which leave lines unfilled.
     if (question) return [wrongOf(words, "nnnnnnnnnnn ".repeat(Math.ceil(question.explanation_length / 10))), longest(ASKED)];
     if (kind === "probe") return [longest(PRACTISED)];
+    if (kind.startsWith("robot")) return [words["tutorial first robot"]];
     return presses ? [longest(PRESSED)] : [];
   }
 
@@ -225,6 +251,7 @@ const Tutorial = (() => {
     drawn = { sheet, page, kit };
     if (tries && page.probe) return practise(false);
     Probe.end();
+    if (shownStep !== page.step) demonstrate(page, kit);
     const card = element("div", `card lesson ${isLarge ? "large" : ""}`), bar = element("div", "left", "<i></i>");
     bar.append(text("span", "", words.seconds.replace("#", page.seconds)));
     card.append(text("p", "count", `${page.number} / ${page.of}`), text("h2", "", page.title), text("p", "says", isTimeOver(page) ? words["tutorial recipes over"] : page.text));
@@ -242,7 +269,6 @@ const Tutorial = (() => {
     count(page, bar, words);
     point(page, partOf, isAsked);
     cover(card);
-    if (shownStep !== page.step) demonstrate(page, kit);
     shownStep = page.step;
     return undefined;
   }
@@ -254,6 +280,7 @@ const Tutorial = (() => {
     clearTimeout(timer);
     clearInterval(ticker);
     clearTimeout(hinter);
+    watched.clear();
     shownStep = "";
   }
 
@@ -263,7 +290,7 @@ const Tutorial = (() => {
   function meant(key, page) {
     const choice = !isOpen(page) ? 0 : /^[1-9]$/.test(key) ? Number(key) : key === "Enter" ? at : 0;
     if (choice && choice <= page.question.choices.length) return { kind: "choose", step: page.step, choice };
-    if (["ArrowRight", "Enter"].includes(key) && page.done) return { kind: "turn", step: page.step, forward: true };
+    if (["ArrowRight", "Enter"].includes(key) && isDone(page)) return { kind: "turn", step: page.step, forward: true };
     if (["ArrowLeft", "Backspace"].includes(key) && page.number > 1) return { kind: "turn", step: page.step, forward: false };
     return null;
   }
@@ -287,7 +314,7 @@ const Tutorial = (() => {
 
   /** Says what is missing, if a key that goes on is pressed before the step is done; whether it was such a key. */
   function refuse(pressed, page) {
-    const goesOn = ["ArrowRight", "Enter"].includes(pressed) && !page.done && !page.probe;
+    const goesOn = ["ArrowRight", "Enter"].includes(pressed) && !isDone(page) && !page.probe;
     if (goesOn) {
       // One message at a time.
       Reason.hide();

@@ -33,7 +33,7 @@ const Upright = (wall, fontFamily, ratio) => {
   const isBeside = wall.arm !== "none" && column - HAND >= TOUCH[0], [theirs, lane] = isBeside ? [1, 0] : [0.85, wall.arm === "none" ? 0 : 0.85];
   const least = TEXTS[0] + TEXTS[2] * (high - Upright.LEAST_HIGH);
   const fixed = 2 * EDGE + 3 * BETWEEN + named * (NAME + INNER) + 3 * INNER + TITLE + rows.theirs.length * (NAME + INNER) + least, shares = ORDER + named + (theirs + lane) * rows.theirs.length + TEXTS[1];
-  const touch = Math.min(TOUCH[1], Math.max(TOUCH[0], (high - fixed) / shares)), small = Math.min(theirs * touch, column - (isBeside ? HAND : 2.4)), order = ORDER * touch;
+  const touch = Math.min(TOUCH[1], Math.max(TOUCH[0], (high - fixed) / shares)), small = Math.min(theirs * touch, column - (isBeside ? HAND : 3)), order = ORDER * touch;
   const texts = least + TEXTS[1] * touch + Math.max(0, high - fixed - shares * touch), flat = FLAT * touch;
 
   const areas = { locations: [], storages: [], knobs: new Map(), limits: new Map() };

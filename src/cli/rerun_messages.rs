@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::failure::Failure;
-use super::output::put;
+use super::output::{progress, put};
 use super::review::AskedLandmarks;
 use crate::run::open_viewer::{
     OngoingRecording, RecordedLandmark, RerunReviewOutcome, RerunReviewRequest, RerunStreamFile, RerunViewerError,
@@ -80,7 +80,13 @@ pub(super) fn open(
         put("preparing the recording for the viewer …\n")?;
     }
     let asked = RerunReviewRequest { recordings, save, web, at };
-    match review(&asked)? {
+    let bar = progress(0, "events prepared");
+    let outcome = review(&asked, &|done, all| {
+        bar.set_length(all);
+        bar.set_position(done);
+    });
+    bar.finish_and_clear();
+    match outcome? {
         RerunReviewOutcome::Saved(file) => {
             let how = if file.made { "was made from the log" } else { "is there already" };
             put(&format!("{} {how}{}\n", file.path.display(), because(&file)))?;

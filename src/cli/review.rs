@@ -46,7 +46,7 @@ pub(super) struct AskedLandmarks {
     /// The same for each signal; also together with --errors.
     #[arg(long, conflicts_with_all = ["save", "web", "at"])]
     pub(super) signals: bool,
-    /// The same for each false belief, by the estimate, with the truth; also together with the others.
+    /// The same for each estimated false belief, with the truth; also together with the others.
     #[arg(long, conflicts_with_all = ["save", "web", "at"])]
     pub(super) beliefs: bool,
     /// With them, only what lasts at least this long.
@@ -69,15 +69,7 @@ fn at_least_zero(text: &str) -> Result<f64, String> {
 /// Parses a time on the trial's clock, written as the console shows it, or in seconds.
 fn moment(text: &str) -> Result<SessionTime, String> {
     let wrong = || "a time in minutes and seconds, such as 1:34, or in seconds, such as 94.6".to_string();
-    let number = |text: &str| text.parse::<f64>().ok().filter(|number| number.is_finite() && *number >= 0.0);
-    let (minutes, seconds) = match text.split_once(':') {
-        None => (0.0, number(text)),
-        Some((minutes, seconds)) => {
-            let minutes: u32 = minutes.parse().map_err(|_| wrong())?;
-            (f64::from(minutes), number(seconds).filter(|seconds| *seconds < 60.0))
-        }
-    };
-    seconds.map(|seconds| SessionTime::from_secs_f64(minutes * 60.0 + seconds)).ok_or_else(wrong)
+    SessionTime::from_clock(text).ok_or_else(wrong)
 }
 
 /// Runs the command `tomcom review RECORDING`.

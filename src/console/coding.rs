@@ -49,8 +49,9 @@ pub fn act(model: &mut ConsoleModel, session: &Session, rate: RaterAction) -> Op
         model.say(NoticeLevel::Refused, "there is no error before this point of the recording");
         return None;
     };
+    let was = coding.codes.0.get(&press).cloned();
     coding.give(press, code);
-    Some(ConsoleCommand::Code { press })
+    Some(ConsoleCommand::Code { press, was })
 }
 
 /// Moves the replay to the error with this index, if there is one.
@@ -66,8 +67,8 @@ fn go(model: &mut ConsoleModel, to: Option<usize>) -> Option<ConsoleCommand> {
 /// Undoes the rater's last change of a code, or redoes it.
 fn undone(model: &mut ConsoleModel, again: bool) -> Option<ConsoleCommand> {
     let coding = model.coding.as_mut()?;
-    let press = if again { coding.redo() } else { coding.undo() };
-    if press.is_none() {
+    let changed = if again { coding.redo() } else { coding.undo() };
+    if changed.is_none() {
         let nothing = if again {
             "no undone change of a code that could be redone"
         } else {
@@ -75,7 +76,7 @@ fn undone(model: &mut ConsoleModel, again: bool) -> Option<ConsoleCommand> {
         };
         model.say(NoticeLevel::Refused, nothing);
     }
-    press.map(|press| ConsoleCommand::Code { press })
+    changed.map(|(press, was)| ConsoleCommand::Code { press, was })
 }
 
 /// Moves the replay to the error with this index in the list.
@@ -175,13 +176,13 @@ impl RaterSession {
         }
     }
 
-    /// Undoes the last change of a code; returns the sequence number of the press whose code changed.
-    pub fn undo(&mut self) -> Option<u64> {
+    /// Undoes the last change of a code; returns the sequence number of the press whose code changed, and what it was.
+    pub fn undo(&mut self) -> Option<(u64, Option<ErrorCauseCode>)> {
         let change = self.done.pop()?;
         self.set(change.press, change.before.clone());
-        let press = change.press;
+        let changed = (change.press, change.after.clone());
         self.undone.push(change);
-        Some(press)
+        Some(changed)
     }
 
     pub fn can_undo(&self) -> bool {
@@ -192,13 +193,13 @@ impl RaterSession {
         !self.undone.is_empty()
     }
 
-    /// Redoes the change that was undone last; returns the sequence number of the press whose code changed.
-    pub fn redo(&mut self) -> Option<u64> {
+    /// Redoes the change that was undone last; returns the sequence number of the press whose code changed, and what it was.
+    pub fn redo(&mut self) -> Option<(u64, Option<ErrorCauseCode>)> {
         let change = self.undone.pop()?;
         self.set(change.press, change.after.clone());
-        let press = change.press;
+        let changed = (change.press, change.before.clone());
         self.done.push(change);
-        Some(press)
+        Some(changed)
     }
 
     fn set(&mut self, press: u64, code: Option<ErrorCauseCode>) {

@@ -22,6 +22,7 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::gaze::recorded::RecordedGazeSummary;
 use tomcom_core::kitchen::{Agent, AspectId};
+use tomcom_core::measures::raters::ErrorCauseCode;
 use tomcom_core::measures::wizard_performance::WizardMeasures;
 use tomcom_session::history::belief_track::BeliefHistory;
 use tomcom_session::history::comparison::{SenderComparison, UnmatchedCommunication};
@@ -379,6 +380,8 @@ pub enum ConsoleCommand {
     /// Save the rater's codes, and move the replay to the error whose code changed.
     Code {
         press: u64,
+        /// The code before the change.
+        was: Option<ErrorCauseCode>,
     },
     Redo,
     Next,
@@ -480,6 +483,10 @@ pub enum ReplayAction {
     /// Go to the position after the event with this sequence number.
     ToEvent(u64),
     ToTime(SessionTime),
+    /// Go to a time of the trial's clock.
+    ToClock(SessionTime),
+    /// Go to the landmark of this kind with this number, from 1.
+    ToNth(ReplayLandmark, usize),
     /// Go to the end of the recording; in a recording that is still being made, stay at its growing end.
     ToEnd,
 }

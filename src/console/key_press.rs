@@ -151,6 +151,10 @@ fn choose(
     mut cursor: ListCursor,
     code: KeyCode,
 ) -> Option<ConsoleCommand> {
+    if let Some((to, _)) = lists::place(model, &cursor).filter(|_| code == KeyCode::Enter) {
+        (model.dialog, model.answered) = (None, Some(model.clock));
+        return Some(ConsoleCommand::Move(to));
+    }
     let left = lists::actions(model, &cursor);
     let reply = cursor.key(left.len(), code);
     let chosen = left.get(cursor.at).filter(|_| reply == ListReply::Taken);

@@ -6,12 +6,14 @@ use fuzzy_matcher::FuzzyMatcher;
 use fuzzy_matcher::skim::SkimMatcherV2;
 
 use super::chord::KeyChord;
-use super::console_model::{ConsoleModel, Dialog};
+use super::console_model::{ConsoleModel, Dialog, ReplayAction};
 use super::key_action::{KeyAction, KeyBinding, ManualAction};
 use super::possible::is_possible_behind;
+use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, ButtonId, ContentId, LocationId, LocationKind};
 use tomcom_session::Session;
 use tomcom_session::history::wording;
+use tomcom_session::replay::ReplayLandmark;
 
 /// Number of rows that the page up and page down keys move the cursor.
 const PAGE: usize = 10;
@@ -51,7 +53,7 @@ impl ListCursor {
             KeyCode::Backspace => drop(self.filter.pop()),
             // Other signs are not part of the filter, so that a question mark does not empty the list.
             KeyCode::Char(letter) if is_typed(letter) => self.filter.push(letter),
-            KeyCode::Char(' ') if !self.filter.is_empty() => self.filter.push(' '),
+            KeyCode::Char(letter @ (' ' | ':' | '.')) if !self.filter.is_empty() => self.filter.push(letter),
             _ => {}
         }
         self.at = if self.filter.len() == before { self.at.min(last) } else { 0 };
@@ -60,7 +62,7 @@ impl ListCursor {
 
     /// Adds the words of a pasted text to the filter.
     pub fn paste(&mut self, text: &str) {
-        self.filter.extend(text.chars().filter(|letter| is_typed(*letter) || *letter == ' '));
+        self.filter.extend(text.chars().filter(|letter| is_typed(*letter) || [' ', ':', '.'].contains(letter)));
         self.at = 0;
     }
 
@@ -115,11 +117,12 @@ impl ListCursor {
     /// Takes a digit where nothing is typed to filter the rows: the cursor goes to the row of that number. One without a row
     /// begins no words of another reason.
     fn number(&mut self, rows: usize, code: KeyCode) -> bool {
-        let KeyCode::Char(digit @ '0'..='9') = code else { return false };
-        if self.filter.is_empty() && ('1'..='9').take(rows).any(|number| number == digit) {
-            self.at = usize::from(digit as u8 - b'1');
+        let KeyCode::Char(letter) = code else { return false };
+        let Some(digit) = letter.to_digit(10).filter(|_| self.filter.is_empty()) else { return false };
+        if (1..=rows).contains(&(digit as usize)) {
+            self.at = digit as usize - 1;
         }
-        self.filter.is_empty()
+        true
     }
 }
 
@@ -367,6 +370,22 @@ pub fn actions<'a>(model: &'a ConsoleModel, cursor: &ListCursor) -> Vec<&'a KeyB
         found.sort_by_key(|line| (!is_keyed(line), model.palette_idle.contains(&line.action)));
     }
     found
+}
+
+/// Where the text that is typed to a replay's palette leads, with it in words: to a time of the trial's clock (`2:13`), or to
+/// a landmark with a number (`error 7`), if a key goes to landmarks of its kind. Raters have none to what would tell them more.
+pub fn place(model: &ConsoleModel, cursor: &ListCursor) -> Option<(ReplayAction, String)> {
+    let goes = |to: ReplayAction| model.keys.chord_for(&KeyAction::Move(to)).is_some();
+    let typed = cursor.filter.trim().to_lowercase();
+    if let Some(time) = SessionTime::from_clock(&typed).filter(|_| goes(ReplayAction::SeekForward)) {
+        return Some((ReplayAction::ToClock(time), format!("go to {time} on the trial's clock")));
+    }
+    let (name, number) = typed.split_at(typed.find(|letter: char| letter.is_ascii_digit())?);
+    let (name, number) = (name.trim(), number.parse().ok()?);
+    use ReplayLandmark::{Error, FalseBelief, Marker, Signal};
+    let is_it = |what: &ReplayLandmark| !name.is_empty() && what.name().contains(name) && goes(ReplayAction::On(*what));
+    let what = [Error, Signal, Marker, FalseBelief].into_iter().find(is_it)?;
+    Some((ReplayAction::ToNth(what, number), format!("go to {} {number}", what.name())))
 }
 
 /// An open list from which the user chooses a recording.

@@ -164,7 +164,7 @@ fn moves(playback: &Playback, to: ReplayAction) -> bool {
         ReplayAction::Faster => playback.speed + 1 < SPEEDS.len(),
         ReplayAction::Slower => playback.speed > 0,
         ReplayAction::PlayPause => playback.events > 0,
-        ReplayAction::ToEvent(_) | ReplayAction::ToTime(_) => true,
+        ReplayAction::ToEvent(_) | ReplayAction::ToTime(_) | ReplayAction::ToClock(_) | ReplayAction::ToNth(..) => true,
     }
 }
 

@@ -28,13 +28,10 @@ const CODING: &str = "Causes of errors";
 /// Help text of the key that shows one state aspect of the belief over time.
 const BELIEF: &str = "show one belief over time; again: the next belief";
 
-/// Help text of the palette, the list of all actions.
-const PALETTE: &str = "list all actions, with search";
-
 /// Key binding of the palette, from which every other action can be found.
-fn palette() -> KeyBinding {
+fn palette(help: &str) -> KeyBinding {
     let keys = [KeyChord::ctrl('k'), KeyChord::char(':')];
-    line("palette", &keys, KeyAction::Palette, CONSOLE, PALETTE, Some("find"))
+    line("palette", &keys, KeyAction::Palette, CONSOLE, help, Some("find"))
 }
 
 /// An entry of the key table: name in key files, keys, action, heading in the help, help text, label in the hint line.
@@ -159,7 +156,7 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
     lines.extend(differences());
     lines.extend([
         line("belief", &[KeyChord::ctrl('b')], KeyAction::Belief, CONSOLE, BELIEF, None),
-        palette(),
+        palette("list all actions, with search"),
         line("help", &[KeyChord::char('?')], KeyAction::Help, CONSOLE, "show this help", Some("help")),
         line("quit", &[KeyChord::ctrl('c')], KeyAction::Quit, CONSOLE, "quit tomcom (asks first)", Some("quit")),
     ]);
@@ -181,14 +178,14 @@ pub fn replay() -> Vec<KeyBinding> {
             "next_false_belief",
             [KeyChord::char('b')],
             On(ReplayLandmark::FalseBelief),
-            "go to the next false belief",
+            "go to the next estimated false belief",
             Some("false belief"),
         ),
         (
             "last_false_belief",
             [KeyChord::char('v')],
             BackTo(ReplayLandmark::FalseBelief),
-            "go to the previous false belief",
+            "go to the previous estimated false belief",
             None,
         ),
         ("seek_forward", plain(PageDown), ReplayAction::SeekForward, "go ten seconds forward", Some("10 s")),
@@ -210,7 +207,7 @@ pub fn replay() -> Vec<KeyBinding> {
         ),
         line("quit", &[KeyChord::ctrl('c')], KeyAction::Quit, CONSOLE, "quit", Some("quit")),
         line("belief", &[KeyChord::ctrl('b')], KeyAction::Belief, CONSOLE, BELIEF, None),
-        palette(),
+        palette("list all actions; type 2:13 or error 7 to go there"),
         line("help", &[KeyChord::char('?')], KeyAction::Help, CONSOLE, "show this help", Some("help")),
     ];
     lines.extend(looks());

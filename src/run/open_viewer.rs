@@ -132,19 +132,20 @@ pub enum RerunReviewOutcome {
     },
 }
 
-/// Opens recordings in the Rerun viewer; several recordings are shown side by side, aligned by their trials' clocks.
+/// Opens recordings in the Rerun viewer; several recordings are shown side by side, aligned by their trials' clocks. While a
+/// stream is written, `tell` gets the number of events so far, and of all.
 ///
 /// # Errors
 /// A recording cannot be read, a file cannot be written, or the viewer cannot be opened.
-pub fn review(asked: &RerunReviewRequest) -> Result<RerunReviewOutcome, RerunViewerError> {
+pub fn review(asked: &RerunReviewRequest, tell: &dyn Fn(u64, u64)) -> Result<RerunReviewOutcome, RerunViewerError> {
     let viewer = if asked.web { ViewerAvailability::None } else { ViewerAvailability::find() };
     match (&asked.save, viewer) {
         (Some(place), _) => {
             let place = place.as_deref().map_or(StreamPlace::BesideLog, StreamPlace::File);
-            Ok(RerunReviewOutcome::Saved(saved(&asked.recordings, place)?))
+            Ok(RerunReviewOutcome::Saved(saved(&asked.recordings, place, tell)?))
         }
         (None, ViewerAvailability::Ready(viewer)) => {
-            let file = saved(&asked.recordings, StreamPlace::Anywhere)?;
+            let file = saved(&asked.recordings, StreamPlace::Anywhere, tell)?;
             let opened = viewer::open(&viewer, &file.path, asked.at.map(|at| at.0));
             opened.map_err(|reason| RerunViewerError::Viewer { path: viewer, reason })?;
             Ok(RerunReviewOutcome::Opened(file))
@@ -156,7 +157,7 @@ pub fn review(asked: &RerunReviewRequest) -> Result<RerunReviewOutcome, RerunVie
                 _ if asked.web => "as --web asks for",
                 _ => "there is no Rerun viewer in PATH",
             };
-            let file = saved(&asked.recordings, StreamPlace::Anywhere)?;
+            let file = saved(&asked.recordings, StreamPlace::Anywhere, tell)?;
             let viewer = serve(&file.path, asked.at).map_err(RerunViewerError::Web)?;
             viewer::browse(&viewer.url);
             Ok(RerunReviewOutcome::Served { file, because, viewer })
@@ -180,7 +181,7 @@ pub fn until_asked_to_end() -> io::Result<()> {
 /// The recording cannot be read, or its stream file not be written.
 pub fn save(recording: &Path) -> Result<PathBuf, RerunViewerError> {
     loop {
-        match saved(&[recording.to_path_buf()], StreamPlace::BesideLog) {
+        match saved(&[recording.to_path_buf()], StreamPlace::BesideLog, &|_, _| ()) {
             Err(RerunViewerError::InUse { .. }) => std::thread::sleep(LOOK),
             saved => return Ok(saved?.path),
         }
@@ -211,7 +212,11 @@ fn serve(file: &Path, at: Option<SessionTime>) -> io::Result<WebViewer> {
 }
 
 /// The stream file of these recordings: the existing file if it is up to date, else a file rebuilt from the logs.
-fn saved(recordings: &[PathBuf], place: StreamPlace) -> Result<RerunStreamFile, RerunViewerError> {
+fn saved(
+    recordings: &[PathBuf],
+    place: StreamPlace,
+    tell: &dyn Fn(u64, u64),
+) -> Result<RerunStreamFile, RerunViewerError> {
     let (mut locked, mut because, mut logs, mut temporary) = (None, None, None, None);
     let path = match (place, recordings) {
         (StreamPlace::File(place), _) => place.to_path_buf(),
@@ -248,7 +253,8 @@ fn saved(recordings: &[PathBuf], place: StreamPlace) -> Result<RerunStreamFile, 
         check_foreign(&path)?;
     }
     let with_films = locked.is_none();
-    let sealed = put(recordings, &path, with_films)?.and_then(|()| logs.map_or(Ok(()), |logs| rrd::seal(&path, &logs)));
+    let sealed =
+        put(recordings, &path, with_films, tell)?.and_then(|()| logs.map_or(Ok(()), |logs| rrd::seal(&path, &logs)));
     drop(locked);
     let kept = |()| temporary.map_or(Ok(()), |path| path.keep().map(drop).map_err(io::Error::from));
     match sealed.and_then(kept) {
@@ -269,13 +275,18 @@ fn check_foreign(path: &Path) -> Result<(), RerunViewerError> {
 
 /// Builds the stream file of these recordings. An existing stream file is replaced only when the new one is complete,
 /// so a damaged log does not destroy it.
-fn put(recordings: &[PathBuf], path: &Path, with_films: bool) -> Result<io::Result<()>, RerunViewerError> {
+fn put(
+    recordings: &[PathBuf],
+    path: &Path,
+    with_films: bool,
+    tell: &dyn Fn(u64, u64),
+) -> Result<io::Result<()>, RerunViewerError> {
     let begun = match Replacement::begin(path) {
         Ok(begun) => begun,
         Err(reason) => return Ok(Err(reason)),
     };
     let outlets = StreamOutlets { file: Some(begun.new_path().to_path_buf()), server: None };
-    let written = write(playing(recordings, with_films)?, recordings, &outlets)?;
+    let written = write(playing(recordings, with_films)?, recordings, &outlets, tell)?;
     Ok(written.and_then(|_| begun.finish()))
 }
 
@@ -329,6 +340,7 @@ fn write(
     playing: Vec<Playing>,
     recordings: &[PathBuf],
     outlets: &StreamOutlets,
+    tell: &dyn Fn(u64, u64),
 ) -> Result<io::Result<RerunWriter>, RerunViewerError> {
     let lanes: Vec<ShownRecording> = playing.iter().map(|one| one.lane.clone()).collect();
     let names: Vec<String> = recordings.iter().map(|recording| name(recording)).collect();
@@ -347,8 +359,12 @@ fn write(
         Ok(writer) => writer,
         Err(error) => return Ok(Err(error)),
     };
-    for one in playing {
-        one.write(&mut writer)?;
+    let events = playing.iter().map(Playing::events).collect::<FileResult<Vec<u64>>>()?;
+    let (mut done, all) = (0, events.iter().sum::<u64>());
+    for (one, events) in playing.into_iter().zip(events) {
+        one.write(&mut writer, |event| tell(done + event, all))?;
+        done += events;
+        tell(done, all);
     }
     writer.finish();
     Ok(Ok(writer))
@@ -424,8 +440,8 @@ pub fn landmarks(recording: &Path, kinds: &[ReplayLandmark]) -> FileResult<Vec<R
         }
     }
     if kinds.contains(&ReplayLandmark::Signal) {
-        for (nth, shown) in follower.signals.shown.iter().enumerate() {
-            add(shown.time, shown.ended, format!("signal {}: {}", nth + 1, signal_words::told(follower, nth)));
+        for ((number, shown), told) in (1..).zip(&follower.signals.shown).zip(signal_words::told(follower)) {
+            add(shown.time, shown.ended, format!("signal {number}: {told}"));
         }
     }
     if kinds.contains(&ReplayLandmark::FalseBelief) {
@@ -434,7 +450,8 @@ pub fn landmarks(recording: &Path, kinds: &[ReplayLandmark]) -> FileResult<Vec<R
         for held in follower.false_beliefs.all() {
             let number = held.lasts(session).then(|| numbers.next()).flatten();
             let number = number.map_or_else(String::new, |number| format!(" {number}"));
-            add(held.began, held.ended, format!("false belief{number}: {}", held.whole(session)));
+            let name = ReplayLandmark::FalseBelief.name();
+            add(held.began, held.ended, format!("{name}{number}: {}", held.whole(session)));
         }
     }
     found.sort_by_key(|one| one.from);
@@ -479,14 +496,19 @@ impl Playing {
         header.started.clone().unwrap_or_else(|| format!("seed {} trial {}", header.session.seed, header.trial))
     }
 
-    /// Writes the whole recording to the stream.
-    fn write(mut self, writer: &mut RerunWriter) -> FileResult<()> {
+    /// Number of events of the recording.
+    fn events(&self) -> FileResult<u64> {
+        Ok(self.replay.log().last_event()?.map_or(0, |last| last.seq + 1))
+    }
+
+    /// Writes the whole recording to the stream; `tell` gets the number of events so far.
+    fn write(mut self, writer: &mut RerunWriter, tell: impl Fn(u64)) -> FileResult<()> {
         writer.fixed(&self.lane, &self.scene.fixed());
         let (opening, lane) = (self.scene.opening(), self.lane.clone());
         writer.moment(&lane, &opening);
         let films = std::mem::take(&mut self.films);
         let mut bars = TimedBars::default();
-        let session = self.play(|moment| {
+        let session = self.play(tell, |moment| {
             for moment in bars.take(&moment) {
                 writer.moment(&lane, &moment);
             }
@@ -503,7 +525,7 @@ impl Playing {
     }
 
     /// Passes on all updates of the scene, in the order of time.
-    fn play(mut self, mut show: impl FnMut(SceneUpdate)) -> FileResult<Session> {
+    fn play(mut self, tell: impl Fn(u64), mut show: impl FnMut(SceneUpdate)) -> FileResult<Session> {
         let mut held: Option<(TimestampedEvent, Option<DirichletBelief>)> = None;
         loop {
             let next = self.replay.step()?;
@@ -515,6 +537,7 @@ impl Playing {
                 self.scene.see(&stamped, inputs).into_iter().for_each(&mut show);
             }
             let Some(next) = next else { return Ok(self.replay.follower.session) };
+            tell(next.stamped.seq);
             let wants = self.scene.wants_belief(next.stamped.time);
             let belief = wants.then(|| self.replay.follower.filter.belief().clone());
             held = Some((next.stamped, belief));

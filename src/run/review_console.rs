@@ -22,6 +22,7 @@ use crate::run::key_file::key_map;
 use crate::run::terminal::TerminalScreen;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
+use tomcom_core::measures::raters::ErrorCauseCode;
 use tomcom_session::history::wording;
 use tomcom_session::log::{LogEnding, RecordingLock, video_file};
 use tomcom_session::replay::ReplayLandmark;
@@ -182,7 +183,7 @@ impl Review {
                 }
                 self.go(to);
             }
-            Some(ConsoleCommand::Code { press }) => self.keep(press),
+            Some(ConsoleCommand::Code { press, was }) => self.keep(press, was),
             Some(ConsoleCommand::Quit) => return Ok(true),
             Some(ConsoleCommand::Input(_) | ConsoleCommand::Start(_) | ConsoleCommand::Next | ConsoleCommand::Redo)
             | None => {}
@@ -190,19 +191,22 @@ impl Review {
         Ok(false)
     }
 
-    /// Saves the raters' codes, and goes to the error whose code changed.
-    fn keep(&mut self, press: u64) {
+    /// Saves the raters' codes, and goes to the error whose code changed; `was`: the code before the change.
+    fn keep(&mut self, press: u64, was: Option<ErrorCauseCode>) {
         let present = self.model.coding.as_ref().and_then(|coding| coding.present(self.film.position));
         if present.map(|error| error.press) != Some(press) {
             self.go(ReplayAction::ToEvent(press));
         }
         let Some(coding) = &self.model.coding else { return };
         let error = coding.errors.iter().find(|error| error.press == press);
+        // A code that is given again replaces nothing.
+        let was = was.filter(|was| coding.codes.0.get(&press) != Some(was));
+        let was = was.map_or(String::new(), |was| format!(", was {}", wording::code(&was)));
         let said = match (coding.next_step(), error) {
-            (Some(next), _) => format!("code saved; {next}"),
+            (Some(next), _) => format!("code saved{was}; {next}"),
             (None, Some(error)) => match coding.code(error) {
-                Some(code) => format!("saved: error {}, {}", error.error, wording::code(code)),
-                None => format!("saved: code of error {} removed", error.error),
+                Some(code) => format!("saved: error {}, {}{was}", error.error, wording::code(code)),
+                None => format!("saved: code of error {} removed{was}", error.error),
             },
             (None, None) => "saved".to_string(),
         };

@@ -253,6 +253,15 @@ impl SeekableReplay {
         session.trial_clock(read) + unread
     }
 
+    /// When the trial's clock first showed this time, as far as the recording was read; `None` if the trial was shorter.
+    pub fn at_clock(&self, clock: SessionTime) -> Option<SessionTime> {
+        let session = self.replay.session();
+        let later = |time: SessionTime, &(from, until): &(SessionTime, SessionTime)| {
+            if from < time { time + (until - from) } else { time }
+        };
+        (clock <= self.trial_length()).then(|| session.pauses.iter().fold(session.trial_start + clock, later))
+    }
+
     /// Position after the events at the time of the trial's start; 0 in a recording without a trial.
     pub fn trial_start(&mut self) -> usize {
         let start = self.steps.iter().find(|step| step.starts_trial).map(|step| step.time);
@@ -407,7 +416,7 @@ impl SeekableReplay {
             ReplayLandmark::Signal => {
                 let follower = &self.replay.follower;
                 let nth = follower.signals.shown.iter().position(|shown| shown.time == now)?;
-                Some(signal_words::told(follower, nth))
+                signal_words::told(follower).into_iter().nth(nth)
             }
             ReplayLandmark::Marker => entries.find_map(|entry| match entry {
                 TimelineEvent::Noted(Event::Marker { note, observer }) => {

@@ -138,7 +138,7 @@ pub enum ReplayLandmark {
     #[strum(serialize = "note")]
     Marker,
     /// It begins in the belief estimate.
-    #[strum(serialize = "false belief")]
+    #[strum(serialize = "estimated false belief")]
     FalseBelief,
 }
 

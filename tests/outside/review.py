@@ -30,9 +30,9 @@ PATIENCE_S = 300
 def third_error(tomcom, recording):
     """The listed command of the third error, as words, and its time on the trial's clock in seconds."""
     lines = run(tomcom, "review", recording, "--errors", "--signals", "--beliefs").splitlines()
-    kinds = {kind: sum(f", {kind}" in line for line in lines) for kind in ("error ", "signal ", "false belief")}
+    kinds = {kind: sum(f", {kind}" in line for line in lines) for kind in ("error ", "signal ", "estimated false belief")}
     print(f"  {len(lines)} lines: {kinds}")
-    assert all(kinds.values()), "no error, signal or false belief"
+    assert all(kinds.values()), "no error, signal or estimated false belief"
     line = next(line for line in lines if ", error 3: " in line)
     print(f"  {line}")
     words = shlex.split(line, comments=True)

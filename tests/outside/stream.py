@@ -107,11 +107,12 @@ def column(stream, top, name):
 
 
 def curves_of(stream):
-    """For every curve and every mark of beliefs, the values by place, and the places at which a curve ends."""
+    """For every curve and every mark of beliefs, the values by place, at a press that before it, and the places at which a curve
+    ends."""
     values, ends = {}, {}
     for entity, place, value in column(stream, "human/belief/", "Scalars:scalars"):
         if value:
-            values.setdefault(entity, {})[place] = value[0]
+            values.setdefault(entity, {}).setdefault(place, value[0])
         elif value is not None:
             ends.setdefault(entity, set()).add(place)
     return values, ends

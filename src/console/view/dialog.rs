@@ -345,13 +345,18 @@ pub fn draw_palette(brush: &mut Painter, screen: Rect, session: &Session, model:
         let remark = if counts { line.group } else { "no effect now" };
         Row { number: String::new(), label: format!("{key:>7}  {}", line.help), remark: remark.to_string(), counts }
     };
-    let rows = lists::actions(model, cursor).iter().map(row).collect();
+    let rows = match lists::place(model, cursor) {
+        Some((_, label)) => vec![Row { number: String::new(), label, remark: String::new(), counts: true }],
+        None => lists::actions(model, cursor).iter().map(row).collect(),
+    };
     let all = lists::actions(model, &ListCursor::default());
     let has_signals = all.iter().any(|line| matches!(line.action, KeyAction::Signal(..)));
     let takes = if has_signals { "run action (signal: show key)" } else { "run the action" };
+    let is_replay = all.iter().any(|line| matches!(line.action, KeyAction::Move(_)));
+    let types = if is_replay { "type to filter, or 2:13, or error 7: " } else { TYPE };
     let space = if model.playback.is_none() { STOPS } else { "" };
     let title = "All actions".to_string();
-    ListPage { title, cursor, rows, all: all.len(), types: TYPE, selects: "up/down", space, takes }.draw(brush, screen);
+    ListPage { title, cursor, rows, all: all.len(), types, selects: "up/down", space, takes }.draw(brush, screen);
 }
 
 impl ListPage<'_> {

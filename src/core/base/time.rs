@@ -20,6 +20,14 @@ impl SessionTime {
         SessionTime((seconds.max(0.0) * 1e9).round() as u64)
     }
 
+    /// A time that is written as clocks show it, `1:34`, or in seconds, `94.6`; `None` for other text.
+    pub fn from_clock(text: &str) -> Option<Self> {
+        let (minutes, seconds) = text.split_once(':').unwrap_or(("0", text));
+        let (minutes, seconds): (u32, f64) = (minutes.parse().ok()?, seconds.parse().ok()?);
+        let most = if text.contains(':') { 60.0 } else { f64::INFINITY };
+        (0.0..most).contains(&seconds).then(|| SessionTime::from_secs_f64(f64::from(minutes) * 60.0 + seconds))
+    }
+
     /// Seconds since the session began.
     pub fn as_secs_f64(self) -> f64 {
         self.0 as f64 / 1e9

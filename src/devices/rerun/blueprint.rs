@@ -202,7 +202,7 @@ fn kitchen(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLi
     let title = if lane.title.is_empty() { "Kitchen".to_string() } else { format!("Kitchen: {}", lane.title) };
     let view = Spatial2DView::new(title).with_origin(path(lane, "kitchen")).with_contents(contents);
     // The display with the labels around it: the viewer by itself takes scaled pictures for larger than they are.
-    let (x_range, y_range) = ([-175.0, WIDE + 175.0].into(), [-125.0, WIDE * 9.0 / 16.0 + 50.0].into());
+    let (x_range, y_range) = ([-175.0, WIDE + 175.0].into(), [-125.0, WIDE * 9.0 / 16.0 + 110.0].into());
     let view = with(view, "VisualBounds2D", &VisualBounds2D::new(Range2D { x_range, y_range }), properties);
     // Only gaze points are shown for a time, on either of the clocks.
     let mut view = view;
@@ -267,12 +267,13 @@ fn whole(lane: &ShownRecording, name: &str, entities: &[&str], properties: &mut 
     with(lanes(lane, name, entities), "TimeAxis", &axis, properties)
 }
 
-/// Errors, signals and wrong beliefs of the whole trial, and the looks, of which a whole trial has too many, about the time
-/// cursor.
+/// Errors, signals and estimated false beliefs of the whole trial, and the looks, of which a whole trial has too many, about
+/// the time cursor.
 fn bars(lane: &ShownRecording, properties: &mut Vec<Property>) -> [ContainerLike; 2] {
     let axis = TimeAxis::new().with_view_range(cursor(-BEFORE_NS, AFTER_NS));
+    let name = "Whole trial: errors, signals, estimated false beliefs";
     [
-        whole(lane, "Whole trial: errors, signals, wrong beliefs", &["error", "signal", "wrong_belief/**"], properties),
+        whole(lane, name, &["error", "signal", "wrong_belief/**"], properties),
         with(lanes(lane, "Looks", &["look"]), "TimeAxis", &axis, properties),
     ]
 }

@@ -35,13 +35,16 @@ pub fn page(session: &Session) -> EntityUpdate {
 }
 
 const LEGEND: &str = "\
-**Colours**, as on the console: errors red, false beliefs yellow, signals, advice and the wizard violet, the human teal, the \
-robot blue, gaze and looks green. What lies in a place is brown. Buttons of the robot are blue, of the human teal, of both \
-red. A bar is grey where several are too close to be told apart: zoom in. \
-Bars are of the whole trial, whatever the time; looks are drawn about the present time.
+**Colours**, as on the console: errors red, estimated false beliefs yellow, signals, advice and the wizard violet, the human \
+teal, the robot blue, gaze and looks green. What lies in a place is brown. Buttons of the robot are blue, of the human \
+teal, of both red. A bar is grey where several are too close to be told apart: zoom in. Bars are of the whole trial, \
+whatever the time; looks are drawn about the present time.
 
-**P(truth)**: lines are the estimate, \u{25c6} is what a simulated participant believes itself before a press, crosses at 0 \
-are errors. A line begins when a belief has been wrong for a second, and ends when it is known (95 %); at most six at a time.
+An **estimated false belief** is one by the assistant's estimate. A **false belief**, as in causes and hits, is the \
+participant's own: only simulated participants record it.
+
+**P(truth)**: lines are the estimate, at a press first that before it, then that after it; \u{25c6} is what a simulated \
+participant believes itself before a press, crosses at 0 are errors. A line begins when a belief has been wrong for a second, and ends when it is known (95 %); at most six at a time.
 
 **Gaze**: the circle is the newest gaze with the area that can be read, large dots are the last 0.5 s, small ones the last \
 1.5 s. Grey dots are uncertain: the eye tracker's confidence is too low, and the estimate does not use them.

@@ -10,7 +10,7 @@ use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_core::mind::{RecordedBelief, RecordedEstimate};
 use tomcom_session::follower::SessionFollower;
-use tomcom_session::history::{event_words, wording};
+use tomcom_session::history::wording;
 use tomcom_session::{Event, Session, TimelineEntry, TimelineEvent, TimestampedEvent};
 
 /// Period of updates of the belief estimate between presses, in nanoseconds.
@@ -63,9 +63,8 @@ pub struct BeliefScene {
     /// State of the kitchen before the last press of the human.
     before: Option<State>,
     /// Parts of the page: the last press of the human with the false beliefs before it, the signal, what the assistant
-    /// advises, and the estimate now.
+    /// advises, and the estimate after all events so far.
     press: String,
-    held_before: String,
     is_error: bool,
     signal: String,
     /// Since when the signal is shown: the next one may have the same words.
@@ -124,16 +123,17 @@ impl BeliefScene {
             if let TimelineEvent::Press { agent: Agent::Human, before, .. } = entry.what {
                 rows.extend(self.pressed(session, entry, pressed));
                 self.before = Some(before);
+                // The estimate after the press is shown at the press's time.
+                self.tick = None;
             }
         }
         match &stamped.event {
             Event::ParticipantBelieves(witness) => rows.extend(self.truly(session, witness)),
             Event::BeliefEstimated(witness) => rows.extend(self.before_press(session, witness, follower)),
-            _ => {
-                let due = inputs.belief.filter(|_| self.is_due(stamped.time));
-                rows.extend(due.map(|belief| self.between(session, belief, follower)).unwrap_or_default());
-            }
+            _ => {}
         }
+        let due = inputs.belief.filter(|_| self.is_due(stamped.time));
+        rows.extend(due.map(|belief| self.now(session, belief, follower)).unwrap_or_default());
         rows.extend(self.bars(session, follower));
         let shown = session.shown.as_ref();
         if shown.map(|shown| shown.since) != self.signal_since {
@@ -155,9 +155,9 @@ impl BeliefScene {
         entry: &TimelineEntry,
         judged: Option<JudgedPressShown<'_>>,
     ) -> Option<EntityUpdate> {
-        let (at, (_, pressed)) =
-            (in_both_clocks(session.trial_clock(entry.time)), event_words::happening(&session.kitchen, &entry.what));
+        let at = in_both_clocks(session.trial_clock(entry.time));
         let error = judged.filter(|judged| judged.press.verdict.error);
+        let (_, pressed) = happenings::told(session, entry, error.is_some());
         let was_error = std::mem::replace(&mut self.is_error, error.is_some());
         let own = std::mem::take(&mut self.own);
         let Some(error) = error else {
@@ -178,6 +178,7 @@ impl BeliefScene {
         Some(EntityUpdate::new(ERRORS, EntityData::State(words, entity_content::ERROR)))
     }
 
+    /// Entity updates of the estimate before a press: the curves at its time, and of an error what was believed wrong.
     fn before_press(
         &mut self,
         session: &Session,
@@ -185,26 +186,25 @@ impl BeliefScene {
         follower: &SessionFollower,
     ) -> Vec<EntityUpdate> {
         let kitchen = &session.kitchen;
+        let before = self.before.take();
         let told = witness.aspects.iter().map(|told| (told.believes.as_str(), told.p_truth));
-        let held = recorded(kitchen, session.state, told);
-        if let Some(before) = self.before.take_if(|_| self.is_error) {
+        let held = recorded(kitchen, before.unwrap_or(session.state), told);
+        // What was shown at the press's time so far is before it.
+        self.tick = None;
+        if let Some(before) = before.filter(|_| self.is_error) {
             let since = |aspect| {
                 let began = follower.false_beliefs.before(aspect, session.time)?.began;
                 let lasted = wording::seconds(session.age(began, session.time).as_secs_f64());
                 Some(format!("{} ({lasted})", moment_on_clock(session.trial_clock_at(began))))
             };
-            self.held_before = believed(kitchen, before, &held, since);
-            self.press += &titled("Believed wrong before it, by the estimate", &self.held_before);
+            let wrong = believed(kitchen, before, &held, since);
+            self.press += &titled("Believed wrong before it, by the estimate", &wrong);
         }
-        self.estimated(session, &held, follower)
+        self.drawn(session, &held, follower)
     }
 
-    fn between(
-        &mut self,
-        session: &Session,
-        belief: &DirichletBelief,
-        follower: &SessionFollower,
-    ) -> Vec<EntityUpdate> {
+    /// Entity updates of the estimate after all events so far: the curves, and what is believed now, in words.
+    fn now(&mut self, session: &Session, belief: &DirichletBelief, follower: &SessionFollower) -> Vec<EntityUpdate> {
         self.tick = Some(session.time.0 / EVERY_NS);
         let kitchen = &session.kitchen;
         let of_aspect = |aspect: usize| {
@@ -212,7 +212,8 @@ impl BeliefScene {
             Held { aspect, thinks, p_truth: belief.p_truth(kitchen, session.state, AspectId(aspect as u8)) }
         };
         let held: Vec<Held> = (0..kitchen.aspects.len()).map(of_aspect).collect();
-        self.estimated(session, &held, follower)
+        self.estimate = told_now(session, &held, follower);
+        self.drawn(session, &held, follower)
     }
 
     /// Bars of false beliefs that begin or end.
@@ -228,7 +229,7 @@ impl BeliefScene {
             }
             let over = drawn.and_then(|_| follower.false_beliefs.before(aspect, session.time));
             rows.extend(over.filter(|over| over.lasts(session)).map(|over| {
-                let text = format!("false belief: {}", over.whole(session));
+                let text = format!("estimated false belief: {}", over.whole(session));
                 let (level, colour) = (SceneLogLevel::Info, entity_content::FALSE);
                 EntityUpdate::new("human/false_beliefs", EntityData::Words { level, text, colour })
             }));
@@ -262,8 +263,8 @@ impl BeliefScene {
         Some((nth, vec![line, EntityUpdate::new(held_truly(name), EntityData::Marks(style, MarkShape::Diamond))]))
     }
 
-    /// Entity updates of the estimate: curves of aspects that are false for a while, until they are known.
-    fn estimated(&mut self, session: &Session, held: &[Held], follower: &SessionFollower) -> Vec<EntityUpdate> {
+    /// Rows of the curves: of aspects that are believed wrong for a while, until they are known.
+    fn drawn(&mut self, session: &Session, held: &[Held], follower: &SessionFollower) -> Vec<EntityUpdate> {
         let kitchen = &session.kitchen;
         let mut rows = Vec::new();
         let now = session.time;
@@ -282,22 +283,6 @@ impl BeliefScene {
                 rows.push(EntityUpdate::new(estimated(name), EntityData::NoValue));
             }
             self.curves[nth] = Some(BeliefCurve { aspect: one.aspect, is_open, last: now });
-        }
-        let unsure = held.iter().filter(|one| (FALSE_BELOW..KNOWN).contains(&one.p_truth));
-        let unsure: Vec<String> =
-            unsure.map(|one| format!("{} {}", named(kitchen, session.state, one), percent(one))).collect();
-        let since = |aspect| {
-            let began = follower.false_beliefs.at(aspect, session.time)?.began;
-            Some(moment_on_clock(session.trial_clock_at(began)))
-        };
-        let wrong = believed(kitchen, session.state, held, since);
-        self.estimate = match wrong.as_str() {
-            "" => "\nNothing is believed wrong now, by the estimate.\n".to_string(),
-            wrong => titled("Believed wrong now, by the estimate", wrong),
-        };
-        if !unsure.is_empty() {
-            let below = KNOWN * 100.0;
-            self.estimate += &format!("\nRight, but with a P(truth) below {below:.0} %: {}.\n", unsure.join(", "));
         }
         rows
     }
@@ -341,6 +326,28 @@ impl BeliefScene {
             self.robot, self.gaze, self.estimate
         )
     }
+}
+
+/// What is believed now, by the estimate, in Markdown.
+fn told_now(session: &Session, held: &[Held], follower: &SessionFollower) -> String {
+    let kitchen = &session.kitchen;
+    let unsure = held.iter().filter(|one| (FALSE_BELOW..KNOWN).contains(&one.p_truth));
+    let unsure: Vec<String> =
+        unsure.map(|one| format!("{} {}", named(kitchen, session.state, one), percent(one))).collect();
+    let since = |aspect| {
+        let began = follower.false_beliefs.at(aspect, session.time)?.began;
+        Some(moment_on_clock(session.trial_clock_at(began)))
+    };
+    let wrong = believed(kitchen, session.state, held, since);
+    let mut told = match wrong.as_str() {
+        "" => "\nNothing is believed wrong now, by the estimate.\n".to_string(),
+        wrong => titled("Believed wrong now, by the estimate", wrong),
+    };
+    if !unsure.is_empty() {
+        let below = KNOWN * 100.0;
+        told += &format!("\nRight, but with a P(truth) below {below:.0} %: {}.\n", unsure.join(", "));
+    }
+    told
 }
 
 /// False beliefs in Markdown, the most certain first; empty without any. A list, since the viewer breaks lines in lists, not

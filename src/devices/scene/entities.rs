@@ -91,6 +91,12 @@ fn above(top: f64) -> f64 {
     if top - ABOVE < EDGE { -ABOVE - EDGE } else { top - ABOVE }
 }
 
+/// Where a label below a place begins whose bottom is there: not on the display's edge, nor over the place's picture.
+fn below(kitchen: &Kitchen, bottom: f64) -> f64 {
+    let edge = kitchen.display_m[1] * per_metre(kitchen);
+    if bottom + ABOVE > edge { edge + EDGE } else { bottom }
+}
+
 /// The name of a storage beside the display; beside the storage, if it is far from the display's edges: storages lie one
 /// above the other, and contents of hands beside them.
 fn beside(kitchen: &Kitchen, storage: &IngredientStorage) -> SceneLabel {
@@ -138,9 +144,7 @@ fn content(kitchen: &Kitchen, before: Option<State>, state: State, id: LocationI
     };
     let entity = format!("kitchen/{}", slug(&location.name));
     let on = area(kitchen, location.display, colour);
-    // Not below the display's edge.
-    let lowest = kitchen.display_m[1] * per_metre(kitchen) - ABOVE;
-    let below = words_at([on.left + on.width / 2.0, (on.top + on.height).min(lowest)], &in_lines(words), colour);
+    let below = words_at([on.left + on.width / 2.0, below(kitchen, on.top + on.height)], &in_lines(words), colour);
     let label = EntityData::Labels(if words.is_empty() { Vec::new() } else { vec![below] });
     let mut rows = vec![
         EntityUpdate::new(&entity, EntityData::Areas(vec![on.clone()])),

@@ -13,7 +13,7 @@ use tomcom_session::follower::SessionFollower;
 use tomcom_session::history::error_reasons::ExplainedError;
 use tomcom_session::history::{event_words, signal_words, wording};
 use tomcom_session::protocol::ProtocolEvent;
-use tomcom_session::wizard_log::ShownSignalRecord;
+use tomcom_session::wizard_log::{ShownSignalRecord, signal_verdicts};
 use tomcom_session::{Event, Session, TimelineEntry, TimelineEvent, TimestampedEvent};
 
 /// Path of the error marks below the belief curves.
@@ -98,6 +98,16 @@ pub fn numbered(follower: &SessionFollower, sent: SessionTime) -> Option<String>
     Some(format!("signal {}: {words}", nth + 1))
 }
 
+/// Who did what, in words; of an error without effect only the button, since the reason of the error says why.
+pub fn told(session: &Session, entry: &TimelineEntry, is_error: bool) -> (&'static str, String) {
+    match entry.what {
+        TimelineEvent::Press { agent: Agent::Human, button, no_effect: Some(_), .. } if is_error => {
+            (Agent::Human.name(), wording::button(&session.kitchen, Agent::Human, button))
+        }
+        _ => event_words::happening(&session.kitchen, &entry.what),
+    }
+}
+
 /// A line of the text log for a new entry of the timeline; presses that were judged errors are marked.
 pub fn entry(
     session: &Session,
@@ -105,7 +115,8 @@ pub fn entry(
     pressed: Option<JudgedPressShown<'_>>,
     follower: &SessionFollower,
 ) -> EntityUpdate {
-    let (who, text) = event_words::happening(&session.kitchen, &entry.what);
+    let is_error = pressed.is_some_and(|pressed| pressed.press.verdict.error);
+    let (who, text) = told(session, entry, is_error);
     let text = if who.is_empty() { text } else { format!("{who}: {text}") };
     match &entry.what {
         &TimelineEvent::Press { agent, no_effect, .. } => {
@@ -279,12 +290,12 @@ impl SignalScene {
 
 /// The page of the signals, the first so many of which are over.
 fn signal_page(follower: &SessionFollower, over: usize) -> String {
-    let session = &follower.session;
+    let (session, verdicts) = (&follower.session, signal_verdicts(follower));
     let told = |(nth, shown): (usize, &ShownSignalRecord)| {
         let at = moment_on_clock(session.trial_clock_at(shown.time));
         let outcome = if nth < over { signal_words::outcome(follower, nth) } else { String::new() };
-        let became = [signal_words::judged(follower, nth), outcome].into_iter().filter(|part| !part.is_empty());
-        let became: String = became.map(|part| format!("- {part}\n")).collect();
+        let became = [signal_words::judged(follower, verdicts.as_deref(), nth), outcome];
+        let became: String = became.iter().filter(|part| !part.is_empty()).map(|part| format!("- {part}\n")).collect();
         format!("**{}**, {at}: {}\n\n{became}\n\n", nth + 1, signal_words::sent(follower, shown).join("; "))
     };
     match follower.signals.shown.as_slice() {

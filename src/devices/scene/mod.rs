@@ -35,7 +35,7 @@ use tomcom_session::follower::SessionFollower;
 use tomcom_session::{Event, Session, TimestampedEvent, apply};
 
 /// Version of the scene's content and layout. A stream with another version is rebuilt from the log.
-pub const VERSION: u32 = 11;
+pub const VERSION: u32 = 12;
 
 /// A time on the trial's clock, in minutes, seconds and tenths. As on the console's clock, what is smaller is left out.
 pub fn moment_on_clock(time: SessionTime) -> String {

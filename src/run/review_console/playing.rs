@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use super::Review;
 use crate::console::console_model::NoticeLevel;
 use crate::console::console_model::{Playback, ReplayAction, SPEEDS};
+use tomcom_core::base::text::count;
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::Event;
 use tomcom_session::replay::ReplayLandmark;
@@ -39,6 +40,15 @@ impl Review {
                 self.name_landmark(ReplayLandmark::Error);
             }
             ReplayAction::ToTime(time) => self.seek(time),
+            ReplayAction::ToClock(clock) => match self.film.at_clock(clock) {
+                Some(time) => self.seek(time),
+                None => {
+                    let end = self.film.trial_length();
+                    let words = format!("there is no {clock}: the trial's clock ends at {end}");
+                    self.model.say(NoticeLevel::Refused, words);
+                }
+            },
+            ReplayAction::ToNth(what, number) => self.go_to_nth(what, number),
             ReplayAction::SeekForward => self.seek(self.now + SEEK),
             ReplayAction::SeekBack => self.seek(self.now - SEEK),
             ReplayAction::ToEnd => {
@@ -76,6 +86,23 @@ impl Review {
             None => {
                 let which = if forward { "later" } else { "earlier" };
                 self.model.say(NoticeLevel::Refused, format!("the recording has no {which} {}", what.name()));
+            }
+        }
+    }
+
+    /// Moves the replay to the landmark of this kind with this number, if there is one.
+    fn go_to_nth(&mut self, what: ReplayLandmark, number: usize) {
+        let times = self.film.landmarks(what);
+        match number.checked_sub(1).and_then(|index| times.get(index)) {
+            Some(&time) => {
+                let position = self.film.until(time);
+                self.stand_at(position);
+                self.name_landmark(what);
+            }
+            None => {
+                let name = what.name();
+                let all = count(times.len() as u64, name, &format!("{name}s"));
+                self.model.say(NoticeLevel::Refused, format!("there is no {name} {number}: the recording has {all}"));
             }
         }
     }

@@ -193,7 +193,7 @@ fn estimated(kitchen: &Kitchen, estimate: &RecordedEstimate) -> Option<String> {
         format!("{} = {} (wrong {:.2})", said(&aspect.aspect), kitchen.worded(&aspect.believes), 1.0 - aspect.p_truth)
     };
     let wrong: Vec<String> = wrong.map(told).collect();
-    (!wrong.is_empty()).then(|| format!("estimated: participant believes {}", wrong.join(", ")))
+    (!wrong.is_empty()).then(|| format!("estimated before the press: participant believes {}", wrong.join(", ")))
 }
 
 fn advised(kitchen: &Kitchen, advice: &Recommendation, by: ConceptName) -> Option<String> {

@@ -62,19 +62,23 @@ pub fn sent(follower: &SessionFollower, shown: &ShownSignalRecord) -> Vec<String
     parts.into_iter().flatten().collect()
 }
 
-/// A signal with its sender, what became of it, whether it was a hit, and last what the assistant thought. `nth`: its index
-/// among the signals shown.
-pub fn told(follower: &SessionFollower, nth: usize) -> String {
-    let mut parts = sent(follower, &follower.signals.shown[nth]);
-    parts.insert(1, outcome(follower, nth));
-    parts.insert(2, judged(follower, nth));
-    parts.retain(|part| !part.is_empty());
-    parts.join("; ")
+/// Each signal that was shown with its sender, what became of it, whether it was a hit, and last what the assistant thought.
+pub fn told(follower: &SessionFollower) -> Vec<String> {
+    let verdicts = signal_verdicts(follower);
+    let told = |(nth, shown): (usize, &ShownSignalRecord)| {
+        let mut parts = sent(follower, shown);
+        parts.insert(1, outcome(follower, nth));
+        parts.insert(2, judged(follower, verdicts.as_deref(), nth));
+        parts.retain(|part| !part.is_empty());
+        parts.join("; ")
+    };
+    follower.signals.shown.iter().enumerate().map(told).collect()
 }
 
-/// Whether a signal was a hit, by the participant's own beliefs, as the study counts it: "hit: no, late".
-pub fn judged(follower: &SessionFollower, nth: usize) -> String {
-    match signal_verdicts(follower).and_then(|verdicts| verdicts.get(nth).copied()) {
+/// Whether a signal was a hit, by the participant's own beliefs, as the study counts it: "hit: no, late". `verdicts`: those of
+/// all signals, from `signal_verdicts`.
+pub fn judged(follower: &SessionFollower, verdicts: Option<&[SignalVerdict]>, nth: usize) -> String {
+    match verdicts.and_then(|verdicts| verdicts.get(nth)) {
         Some(SignalVerdict::Hit { .. }) => "hit: yes, about a false belief that led to errors".to_string(),
         Some(other) => format!("hit: no, {}", other.name()),
         None if follower.session.is_trial_over() => "hit: not known".to_string(),

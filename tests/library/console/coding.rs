@@ -143,7 +143,7 @@ fn a_click_on_the_codebook_gives_the_code() {
             let mut stage = rater(RaterCodes::default());
             stage.model.size = size;
             let command = stage.click(words);
-            assert_eq!(command, Some(ConsoleCommand::Code { press: 200 }), "{words} at {size:?}");
+            assert_eq!(command, Some(ConsoleCommand::Code { press: 200, was: None }), "{words} at {size:?}");
             assert_eq!(coding(&stage).codes.0[&200], code);
         }
     }

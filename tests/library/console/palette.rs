@@ -7,11 +7,12 @@ use tomcom::console::console_model::Dialog;
 use tomcom::console::console_model::{Playback, ReplayAction};
 use tomcom::console::key_action::{KeyAction, KeyLayer, ManualAction};
 use tomcom::console::lists::ListCursor;
-use tomcom::console::lists::actions;
 use tomcom::console::lists::{RecordingPicker, RecordingReply};
+use tomcom::console::lists::{actions, place};
 use tomcom::console::view::recordings_page::draw_recordings;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::console::{ConsoleCommand, KeyBindings, KeyFileBindings};
+use tomcom_session::replay::ReplayLandmark;
 use tomcom_study::analysis::recording_summary::RecordingList;
 
 use super::{SIZES, Stage, input, type_in};
@@ -151,6 +152,44 @@ fn a_replay_has_its_actions_in_the_palette_and_the_space_bar_does_nothing() {
     type_in(&mut stage, "faster");
     stage.wait(0.1);
     assert_eq!(stage.key(KeyCode::Enter), Some(ConsoleCommand::Move(ReplayAction::Faster)));
+}
+
+#[test]
+fn a_time_or_a_number_that_is_typed_in_a_replay_leads_there() {
+    let nth = |what, number| Some(ReplayAction::ToNth(what, number));
+    let clock = |seconds| Some(ReplayAction::ToClock(at(seconds)));
+    let places = [
+        ("2:13", clock(133.0)),
+        ("0:05.5", clock(5.5)),
+        ("133", clock(133.0)),
+        ("2:61", None),
+        ("error 7", nth(ReplayLandmark::Error, 7)),
+        ("note 2", nth(ReplayLandmark::Marker, 2)),
+        ("signal 3", nth(ReplayLandmark::Signal, 3)),
+        ("belief 4", nth(ReplayLandmark::FalseBelief, 4)),
+        ("go to the next 4", None),
+    ];
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    // A live session has no such places.
+    let typed = |text: &str| ListCursor { filter: text.to_string(), at: 0 };
+    assert_eq!(place(&stage.model, &typed("2:13")), None);
+    stage.replays(Playback { event: 10, events: 90, ..Playback::new("S001".to_string()) });
+    for (text, to) in places {
+        assert_eq!(place(&stage.model, &typed(text)).map(|(to, _)| to), to, "{text}");
+    }
+    stage.control('k');
+    type_in(&mut stage, "2:13");
+    stage.shows_everywhere(&["go to 2:13 on the trial's clock"]);
+    stage.wait(0.1);
+    assert_eq!(stage.key(KeyCode::Enter), clock(133.0).map(ConsoleCommand::Move));
+    assert_eq!(stage.model.dialog, None);
+    // Raters are not led to what would tell them whether the participant was assisted, nor to what they have no key for.
+    let (kitchen, map) = (stage.session.kitchen.clone(), KeyFileBindings::default());
+    stage.model.keys = KeyBindings::replay(&kitchen, &map).expect("the keys are free").with_coding(&kitchen);
+    for (text, to) in places {
+        let to = to.filter(|to| !matches!(to, ReplayAction::ToNth(what, _) if *what != ReplayLandmark::Error));
+        assert_eq!(place(&stage.model, &typed(text)).map(|(to, _)| to), to, "{text}");
+    }
 }
 
 /// The rows that are found, the best first.

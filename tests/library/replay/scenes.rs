@@ -1,5 +1,8 @@
 //! The scene that Rerun shows of a session.
 
+use std::cell::RefCell;
+
+use tomcom::run::open_viewer::{RerunReviewRequest, review};
 use tomcom::run::seekable_replay::SeekableReplay;
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::measures::wizard_performance::SignalVerdict;
@@ -132,7 +135,9 @@ fn a_page_says_what_the_error_was_why_and_what_was_believed_before_it() {
         let (_, then) = pages.iter().rfind(|(_, page)| page.starts_with(&heading)).expect("a page of the error");
         // A table would be as wide as its longest line, and cut.
         assert!(!then.contains('|'), "{then}");
-        let is_bar = |text: &str| text.starts_with(&format!("{number}: ")) && text.contains(&why);
+        // A press without effect says why once.
+        assert!(page.lines().next().is_some_and(|heading| !heading.contains(&why)), "{why}: {page}");
+        let is_bar = |text: &str| text.starts_with(&format!("{number}: ")) && text.matches(&why).count() == 1;
         assert!(states.iter().any(|(moment, text)| moment.step == *seq && is_bar(text)), "{why}");
     }
     let believed =
@@ -210,6 +215,22 @@ fn labels_keep_apart_and_bars_end_with_the_trial() {
     let is_narrow = |line: &str| line.split(" + ").count() < 2 || line.chars().count() <= 22;
     assert!(contents.iter().all(|label| label.words.lines().all(is_narrow)));
     assert!(contents.iter().any(|label| label.words.contains('\n')), "no stack is in lines");
+    // What a place holds stands below its picture.
+    let mut below = 0;
+    for moment in &moments {
+        for row in &moment.rows {
+            let (Some(place), EntityData::Labels(labels)) = (row.entity.strip_suffix("/words"), &row.shown) else {
+                continue;
+            };
+            let place = moment.rows.iter().find(|row| row.entity == place && place != "kitchen/shown");
+            let Some(EntityData::Areas(areas)) = place.map(|place| &place.shown) else { continue };
+            for area in areas {
+                assert!(labels.iter().all(|label| label.at[1] >= area.top + area.height), "{row:?}");
+                below += labels.len();
+            }
+        }
+    }
+    assert!(below > 5, "{below} labels");
     for lane in ["error", "look", "signal"] {
         assert!(texts(&moments, lane).last().is_none_or(|(_, text)| text.is_empty()), "{lane}");
     }
@@ -247,29 +268,63 @@ fn curves_are_of_false_beliefs_and_no_two_of_a_minute_have_one_colour() {
 }
 
 #[test]
-fn a_scene_tells_a_belief_before_the_press_as_the_log_does() {
+fn a_scene_tells_a_belief_before_the_press_as_the_log_does_and_then_the_one_after_it() {
     let out = simulated("default.toml", ArmKind::Physics, "scene", 1, 3);
     let recording = only_recording(&out);
-    let (moments, events) = shown(&recording);
-    let witnesses = events.iter().filter_map(|stamped| match &stamped.event {
-        Event::BeliefEstimated(witness) => Some((stamped, witness)),
-        _ => None,
-    });
-    let (mut count, mut drawn) = (0, 0);
-    for (stamped, witness) in witnesses {
+    let (moments, _) = shown(&recording);
+    let mut replay = RecordingReplay::open(&recording).expect("a recording");
+    let (mut count, mut drawn, mut told_now) = (0, 0, 0);
+    while let Some(line) = replay.step().expect("events of a session") {
+        let stamped = &line.stamped;
+        let Event::BeliefEstimated(witness) = &stamped.event else { continue };
+        let (session, belief) = (replay.session(), replay.follower.filter.belief());
         count += 1;
         let mut of_step = moments.iter().filter(|moment| moment.step == stamped.seq && moment.time == stamped.time);
         // Where nothing is drawn, there is no moment.
         let Some(moment) = of_step.next() else { continue };
-        for told in &witness.aspects {
+        let of_press = moments.iter().filter(|moment| [witness.press, stamped.seq].contains(&moment.step));
+        let mut pages = of_press.flat_map(|moment| &moment.rows).filter_map(|row| match &row.shown {
+            EntityData::Page(text) if row.entity == "human/now" => Some(text),
+            _ => None,
+        });
+        let page = pages.next_back().and_then(|text| text.split_once("Believed wrong now"));
+        for (index, told) in witness.aspects.iter().enumerate() {
             let entity = format!("human/belief/estimated/{}", told.aspect.replace(' ', "_"));
-            let is_value = |row: &&EntityUpdate| matches!(row.shown, EntityData::Value(_)) && row.entity == entity;
-            let rows: Vec<&EntityUpdate> = moment.rows.iter().filter(is_value).collect();
-            assert!(rows.iter().all(|row| row.shown == EntityData::Value(told.p_truth)) && rows.len() < 2, "{entity}");
-            drawn += rows.len();
+            let value = |row: &EntityUpdate| match row.shown {
+                EntityData::Value(p_truth) if row.entity == entity => Some(p_truth),
+                _ => None,
+            };
+            let values: Vec<f64> = moment.rows.iter().filter_map(value).collect();
+            let aspect = tomcom_core::kitchen::AspectId(index as u8);
+            let both = [told.p_truth, belief.p_truth(&session.kitchen, session.state, aspect)];
+            // A curve ends where the belief is known, and begins where it is wrong.
+            assert!(
+                values == both || values == both[..1] || values == both[1..] || values.is_empty(),
+                "{entity}: {values:?}"
+            );
+            drawn += usize::from(values == both);
+            // What is believed now is what is believed after the press.
+            if let Some((_, now)) = page.filter(|_| both[1] < FALSE_BELOW) {
+                let p_truth = format!("; P(truth) {:.0} %", 100.0 * both[1]);
+                assert!(now.contains(&p_truth), "{entity}: {p_truth} in {now}");
+                told_now += 1;
+            }
         }
     }
-    assert!(count > 20 && drawn > 20, "{count} presses, {drawn} values");
+    assert!(count > 20 && drawn > 20 && told_now > 20, "{count} presses, {drawn} values, {told_now} in words");
+}
+
+#[test]
+fn a_stream_tells_how_many_events_of_all_its_recordings_are_written() {
+    let recordings = ["hand", "simulated"].map(|name| PathBuf::from(format!("tests/golden/format-3-{name}.jsonl")));
+    let lines = |path: &PathBuf| fs::read_to_string(path).expect("a log").lines().count() as u64 - 1;
+    let (first, all) = (lines(&recordings[0]), recordings.iter().map(lines).sum::<u64>());
+    let (save, told) = (Some(Some(folder("scene-progress").join("both.rrd"))), RefCell::new(Vec::new()));
+    let asked = RerunReviewRequest { recordings: recordings.to_vec(), save, web: false, at: None };
+    review(&asked, &|done, of| told.borrow_mut().push((done, of))).expect("a stream");
+    let told = told.into_inner();
+    assert!(told.is_sorted() && told.contains(&(first, all)), "{first} of {all}");
+    assert_eq!(told.last(), Some(&(all, all)));
 }
 
 #[test]

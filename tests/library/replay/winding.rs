@@ -162,7 +162,7 @@ fn a_replay_goes_from_one_error_signal_or_false_belief_to_the_next_and_back() {
     film.wind(wrong);
     assert_eq!(film.landmark(ReplayLandmark::FalseBelief, true, true), Some(wrong), "the one at which it stands");
     let named = film.named(ReplayLandmark::FalseBelief).expect("something is believed wrong");
-    assert!(named.starts_with("false belief "), "{named}");
+    assert!(named.starts_with("estimated false belief "), "{named}");
     assert!(named.contains(": thinks ") && named.contains(", is "), "{named}");
     let moment = film.beliefs.until(film.time()).last().expect("an estimate");
     assert!(moment.held.iter().any(|held| held.is_false()), "{moment:?}");
@@ -175,4 +175,19 @@ fn a_replay_goes_from_one_error_signal_or_false_belief_to_the_next_and_back() {
     let shown = |film: FileResult<SeekableReplay>| film.expect("a recording").session.spec.console.visibility;
     assert_eq!(shown(SeekableReplay::begin(&recording)), WizardVisibility::Belief);
     assert_eq!(shown(SeekableReplay::begin(&recording).map(SeekableReplay::blinded)), WizardVisibility::State);
+}
+
+#[test]
+fn a_time_of_the_trials_clock_is_found_across_pauses() {
+    let mut film = SeekableReplay::open(Path::new("tests/golden/format-3-hand.jsonl")).expect("it opens");
+    let length = film.trial_length();
+    for share in 0..=20 {
+        let clock = SessionTime(length.0 / 20 * share);
+        let time = film.at_clock(clock).expect("a time of the trial");
+        let position = film.until(time);
+        film.wind(position);
+        assert_eq!(film.session.trial_clock(time), clock);
+    }
+    assert!(film.session.pauses.len() > 3, "{:?}", film.session.pauses);
+    assert_eq!(film.at_clock(length + at(1.0)), None);
 }

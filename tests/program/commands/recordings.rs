@@ -194,9 +194,12 @@ fn a_path_that_is_nearly_right_gets_a_suggestion() {
         assert!(told.contains(&wanted), "{command:?}: {told}");
     }
     for command in ["plan", "operate", "power", "simulate"] {
-        let told = complaint(&[command, "sessions/studdy.toml"]);
-        assert!(told.contains("sessions/studdy.toml: cannot be read"), "{told}");
-        assert!(told.contains("; did you mean sessions/study.toml?"), "{told}");
+        // A mere name is looked for in sessions/.
+        for wrong in ["sessions/studdy.toml", "study.toml"] {
+            let told = complaint(&[command, wrong]);
+            assert!(told.contains(&format!("{wrong}: cannot be read")), "{told}");
+            assert!(told.contains("; did you mean sessions/study.toml?"), "{told}");
+        }
     }
     let far = complaint(&["replay", &format!("{out}/another"), "--verify"]);
     assert!(!far.contains("did you mean") && far.contains("cannot be read"), "{far}");
@@ -212,16 +215,16 @@ fn errors_of_a_recording_are_listed_as_commands_that_open_the_viewer_there() {
     let told = list(&["--errors", "--signals", "--beliefs"]);
     let line =
         |words: &str| told.lines().find(|line| line.contains(words)).unwrap_or_else(|| panic!("{words}: {told}"));
-    for words in [", error 1: ", ", error 3: ", ", false belief 1: ", ", signal 1: "] {
+    for words in [", error 1: ", ", error 3: ", ", estimated false belief 1: ", ", signal 1: "] {
         let (command, comment) = line(words).split_once("  # to ").expect("a comment");
         assert!(comment.split_once(words.trim_end()).is_some_and(|(until, _)| !until.is_empty()), "{comment}");
         let at = command.strip_prefix(&format!("tomcom review {recording} --at ")).expect("a command");
         // What is printed is taken: the refusal is of --errors beside it.
         assert!(complaint(&["review", recording, "--errors", "--at", at]).contains("--errors"), "{at}");
     }
-    assert!(line(", false belief 1: ").contains(": thinks "), "{told}");
+    assert!(line(", estimated false belief 1: ").contains(": thinks "), "{told}");
     let until = ["a look", "a press of the", "a signal", "the kitchen", "another wrong value", "the trial ended"];
-    for line in told.lines().filter(|line| line.contains(", false belief")) {
+    for line in told.lines().filter(|line| line.contains(", estimated false belief")) {
         let end = line.split_once(" s, until ").map_or("", |(_, end)| end);
         assert!(until.iter().any(|until| end.starts_with(until)) && !line.contains("for 0.0 s"), "{line}");
     }

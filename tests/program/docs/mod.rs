@@ -109,16 +109,16 @@ fn what_the_pages_show_is_what_the_program_does() {
     pages().par_iter().for_each(|page| hold(page, &scratch("docs", page), |_, _| ()));
 }
 
-/// What is about the program's own package runs; what is about other packages and devices is compiled.
+/// What is about the program's own package and files runs; what is about other packages and devices is compiled.
 #[test]
-#[ignore = "needs Python with pandas, which TOMCOM_PYTHON names"]
+#[ignore = "needs Python with pandas and rerun-sdk, which TOMCOM_PYTHON names"]
 fn python_on_the_pages_runs() {
     let python = std::env::var("TOMCOM_PYTHON").unwrap_or_else(|_| "python3".to_string());
     let has_python = |page: &&Page| page.blocks.iter().any(|block| block.language == "python");
     pages().par_iter().filter(has_python).for_each(|page| {
         let folder = scratch("docs-python", page);
         hold(page, &folder, |block, place| {
-            let code = match block.text.contains("import tomcom") {
+            let code = match block.text.contains("import tomcom") || block.text.contains("from rerun") {
                 true => block.text.clone(),
                 false => format!("compile({:?}, 'snippet', 'exec')", block.text),
             };

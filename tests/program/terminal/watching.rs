@@ -66,13 +66,14 @@ fn a_rater_codes_errors_undoes_goes_on_another_time_and_settles_with_another_one
         ("1", "saved: error 1, slip"),
         ("Enter", "coded, 1 since opening"),
         (&letter, "saved: error 2, wrong about cooking pot"),
-        ("u", "saved: code of error 2 removed"),
+        ("u", "saved: code of error 2 removed, was wrong about cooking pot"),
         ("C-y", "saved: error 2, wrong about cooking pot"),
         ("Down", "coded, 2 since opening"),
         ("3", "no code given: error 3 is only selected"),
         ("Enter", "coded, 2 since opening"),
         ("3", "saved: error 3, other cause"),
-        ("Delete", "saved: code of error 3 removed"),
+        ("2", "saved: error 3, race, was other cause"),
+        ("Delete", "saved: code of error 3 removed, was race"),
         ("Backspace", "2 since opening"),
     ];
     press_each(&terminal, &first);

@@ -4,7 +4,6 @@ use serde::Serialize;
 
 use crate::follower::SessionFollower;
 use crate::history::error_reasons::ExplainedError;
-use crate::wizard_log::clock_at;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, Kitchen};
 use tomcom_core::measures::JudgedPress;
@@ -37,7 +36,7 @@ impl ListedError {
         let listed = |(index, (judged, explained)): (usize, (&JudgedPress, ExplainedError))| ListedError {
             error: index as u64 + 1,
             press: judged.seq,
-            time_s: clock_at(session, judged.time).as_secs_f64(),
+            time_s: session.trial_clock_at(judged.time).as_secs_f64(),
             button: explained.press,
             effective: kitchen.no_effect(judged.before, Agent::Human, judged.button).is_none(),
             why: explained.why,

@@ -220,19 +220,14 @@ fn periods<'a>(
         let presses = |time: SessionTime| follower.judged.partition_point(|press| press.time < time) as u32;
         FalseBeliefPeriod {
             aspect: episode.aspect,
-            began: clock_at(session, episode.began),
-            corrected: episode.corrected.map(|time| (clock_at(session, time), presses(time))),
+            began: session.trial_clock_at(episode.began),
+            corrected: episode.corrected.map(|time| (session.trial_clock_at(time), presses(time))),
             errors: episode.errors,
         }
     };
     episodes.map(period).collect()
 }
 
-/// An earlier session time on the trial's clock.
-pub fn clock_at(session: &Session, time: SessionTime) -> SessionTime {
-    let paused = session.pauses.iter().map(|&(from, until)| until.min(time) - from);
-    paused.fold(time - session.trial_start, |clock, pause| clock - pause)
-}
 
 pub fn describe(figures: &WizardSummary) -> String {
     let measures = &figures.measures;

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::signal::Signal;
 use crate::base::time::SessionTime;
-use crate::kitchen::{AspectId, Kitchen, LocationKind, OrderContent, State};
+use crate::kitchen::{AspectId, Kitchen, State};
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::rounded;
 
@@ -100,12 +100,7 @@ impl Recommendation {
 /// The state aspects that a signal reveals: a location's content, or an order and the recipe of the ordered dish; none
 /// for proposed presses.
 pub fn aspects_told(kitchen: &Kitchen, state: State, signal: &Signal) -> Vec<AspectId> {
-    let Some(location) = signal.location(kitchen) else { return Vec::new() };
-    let mut aspects = vec![AspectId::of_location(location)];
-    if let (LocationKind::Order, OrderContent::Dish(dish)) = (kitchen.location(location).kind, state.order(location)) {
-        aspects.push(kitchen.aspect_of_dish(dish));
-    }
-    aspects
+    signal.location(kitchen).map_or_else(Vec::new, |location| kitchen.aspects_at(state, location))
 }
 
 /// A content's name worded as part of a sentence; a stack is put in quotes.

@@ -200,6 +200,15 @@ impl Kitchen {
     pub fn aspect_of_dish(&self, dish: DishId) -> AspectId {
         AspectId((self.locations.len() + dish.index()) as u8)
     }
+
+    /// The state aspects that showing a location reveals: its content, or an order and the recipe of the ordered dish.
+    pub fn aspects_at(&self, state: State, location: LocationId) -> Vec<AspectId> {
+        let mut aspects = vec![AspectId::of_location(location)];
+        if let (LocationKind::Order, OrderContent::Dish(dish)) = (self.location(location).kind, state.order(location)) {
+            aspects.push(self.aspect_of_dish(dish));
+        }
+        aspects
+    }
 }
 
 /// Transition tables over contents, computed once for each kitchen.

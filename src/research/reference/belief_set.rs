@@ -12,7 +12,7 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{
-    Agent, AspectId, AspectKind, ButtonId, Kitchen, LocationId, LocationKind, OrderContent, Press, State,
+    Agent, AspectId, AspectKind, ButtonId, Kitchen, LocationId, OrderContent, Press, State,
 };
 use tomcom_core::mind::dirichlet::{Dirichlet, DirichletBelief};
 use tomcom_core::mind::filter::unseen::UnknownGazeTimer;
@@ -302,12 +302,7 @@ impl ParticleSet {
 
     fn told(&mut self, now: SessionTime, location: LocationId, random: &mut Stream) {
         let kitchen = self.kitchen.clone();
-        let mut aspects = vec![AspectId::of_location(location)];
-        if let (LocationKind::Order, OrderContent::Dish(dish)) =
-            (kitchen.location(location).kind, self.shown.order(location))
-        {
-            aspects.push(kitchen.aspect_of_dish(dish));
-        }
+        let aspects = kitchen.aspects_at(self.shown, location);
         self.of.iter_mut().for_each(|person| person.read_signal = false);
         self.signals.show(&kitchen, &self.model, now, (location, aspects));
         if !self.model.signal.takes_time() {

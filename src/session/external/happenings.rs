@@ -3,7 +3,6 @@
 
 use serde::Serialize;
 
-use crate::wizard_log::clock_at;
 use crate::{Event, Session, TimestampedEvent};
 use tomcom_core::communication::Signal;
 use tomcom_core::kitchen::{Agent, KitchenChange, LocationId};
@@ -74,7 +73,7 @@ impl Happenings {
         change: &KitchenChange,
         judged: Option<&JudgedPress>,
     ) {
-        let at_s = rounded_s(clock_at(session, stamped.time).as_secs_f64());
+        let at_s = rounded_s(session.trial_clock_at(stamped.time).as_secs_f64());
         let kitchen = &session.kitchen;
         if let KitchenChange::Press { press, .. } = change {
             let button = kitchen.button(press.agent, press.button).name.clone();

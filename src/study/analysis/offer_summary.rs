@@ -9,7 +9,6 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::offer::{Offer, OfferCloseReason, OfferKeyKind};
 use tomcom_core::measures::median;
 use tomcom_session::Session;
-use tomcom_session::wizard_log::clock_at;
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TimedOffer {
@@ -26,8 +25,8 @@ pub struct TimedOffer {
 impl TimedOffer {
     pub fn all(session: &Session) -> Vec<TimedOffer> {
         let timed = |offer: &Offer, closed: Option<(f64, OfferCloseReason)>| {
-            let opened_s = clock_at(session, offer.opened).as_secs_f64();
-            let sent = offer.used.map(|used| clock_at(session, used.at));
+            let opened_s = session.trial_clock_at(offer.opened).as_secs_f64();
+            let sent = offer.used.map(|used| session.trial_clock_at(used.at));
             TimedOffer {
                 offer: offer.clone(),
                 opened_s,
@@ -39,7 +38,7 @@ impl TimedOffer {
         };
         let closed = session.offers.closed().iter();
         let closed =
-            closed.map(|one| timed(&one.offer, Some((clock_at(session, one.closed).as_secs_f64(), one.reason))));
+            closed.map(|one| timed(&one.offer, Some((session.trial_clock_at(one.closed).as_secs_f64(), one.reason))));
         closed.chain(session.offers.unclosed().map(|open| timed(open, None))).collect()
     }
 

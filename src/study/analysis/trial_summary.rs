@@ -15,7 +15,6 @@ use tomcom_core::measures::sequences::{ErrorSequence, sequences, sequences_any_a
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::settings::ParticipantKind;
 use tomcom_session::study_arm::StudyArm;
-use tomcom_session::wizard_log::clock_at;
 use tomcom_session::{Event, Session, TimelineEvent, TimestampedEvent};
 
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -321,7 +320,7 @@ pub fn order_times(session: &Session) -> Vec<f64> {
             }
             TimelineEvent::Served { order } => {
                 let since = shown.remove(&order);
-                times.extend(since.map(|since| clock_at(session, entry.time).secs_since(clock_at(session, since))));
+                times.extend(since.map(|since| session.trial_clock_at(entry.time).secs_since(session.trial_clock_at(since))));
             }
             _ => {}
         }
@@ -374,7 +373,7 @@ impl SignalTimes {
         let end = session.trial_clock(session.time);
         let (mut shown, mut seconds): (Option<SessionTime>, f64) = (None, 0.0);
         for &(time, appears) in &self.changes {
-            let now = clock_at(session, time).min(end);
+            let now = session.trial_clock_at(time).min(end);
             let since = if appears { shown.replace(now) } else { shown.take() };
             seconds += since.map_or(0.0, |since| now.secs_since(since));
         }

@@ -45,7 +45,7 @@ use tomcom_session::protocol::{ProtocolEvent, StudyProtocolState};
 use tomcom_session::settings::{Condition, ParticipantKind};
 use tomcom_session::wall_display::{AnswerDevice, DisplayEvent};
 use tomcom_session::watcher::{SenderComparisonFollower, SenderComparisonSettings};
-use tomcom_session::wizard_log::{WizardSummary, clock_at};
+use tomcom_session::wizard_log::WizardSummary;
 use tomcom_session::{Event, LogHeader, Session, TimelineEntry, TimelineEvent, TimestampedEvent, TrialPhase};
 
 #[derive(Debug)]
@@ -282,7 +282,7 @@ fn sent(session: &Session) -> Vec<CommunicationEvent> {
             TimelineEvent::Press { agent: Agent::Human, .. } => press += 1,
             TimelineEvent::Noted(Event::SignalShown { signal, .. }) => {
                 let content = signal.compared(&session.kitchen);
-                sent.push(CommunicationEvent { press, clock: clock_at(session, entry.time), content });
+                sent.push(CommunicationEvent { press, clock: session.trial_clock_at(entry.time), content });
             }
             _ => {}
         }
@@ -393,7 +393,7 @@ fn trial(name: &str, header: &LogHeader, follower: &SessionFollower, left_out: O
 
 /// Time between two session times, without pauses, in seconds.
 fn since(session: &Session, from: SessionTime, to: SessionTime) -> f64 {
-    clock_at(session, to).secs_since(clock_at(session, from))
+    session.trial_clock_at(to).secs_since(session.trial_clock_at(from))
 }
 
 fn confirmed_answers(session: &Session) -> Vec<QuestionnaireAnswer> {

@@ -22,7 +22,6 @@ use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::log::{LogReader, consensus_file, rater_codes};
 use tomcom_session::settings::ParticipantKind;
-use tomcom_session::wizard_log::clock_at;
 use tomcom_session::{Event, Session, TimestampedEvent};
 
 #[derive(Debug)]
@@ -63,7 +62,7 @@ impl<'a> TrialPressAnalyses<'a> {
     fn analysis(&self, seq: u64, session: &Session) -> Option<PressAnalysis<'a>> {
         let index = self.judged.binary_search_by_key(&seq, |press| press.seq).ok()?;
         let episode = self.known.and_then(|known| known.episode(&session.kitchen, &self.judged[index]));
-        let clock_s = |time: SessionTime| clock_at(session, time).as_secs_f64();
+        let clock_s = |time: SessionTime| session.trial_clock_at(time).as_secs_f64();
         let sequence = self.sequences.iter().position(|one| one.errors.contains(&index));
         let estimated = self.by_estimate.and_then(|causes| causes.iter().find(|(press, _)| *press == seq));
         Some(PressAnalysis {
@@ -132,7 +131,7 @@ impl RowCollector {
         let estimated = follower.estimated.as_ref().filter(|estimated| estimated.press == stamped.seq);
         self.presses.push(RecordedPress {
             seq: stamped.seq,
-            time_s: clock_at(session, stamped.time).as_secs_f64(),
+            time_s: session.trial_clock_at(stamped.time).as_secs_f64(),
             press: *press,
             number,
             since_s: before.map(|before| session.age(before, stamped.time).as_secs_f64()),
@@ -181,7 +180,7 @@ impl RowCollector {
 
     fn end_look(&mut self, session: &Session) {
         let Some(run) = self.look.take() else { return };
-        let time_s = clock_at(session, run.began).as_secs_f64();
+        let time_s = session.trial_clock_at(run.began).as_secs_f64();
         self.rows.add(&GazeRow { recording: &self.recording, kitchen: &session.kitchen, time_s, run });
     }
 

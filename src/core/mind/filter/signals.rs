@@ -6,7 +6,7 @@ use super::unseen::PossiblyReadSignal;
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{AspectId, Kitchen, LocationId, LocationKind, OrderContent, State};
+use crate::kitchen::{AspectId, Kitchen, LocationId, LocationKind, State};
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::model::{HumanModel, SignalModel, SignalReadingForecast};
 
@@ -115,13 +115,9 @@ impl BeliefFilter {
     /// A signal is shown. Where signals take no time to be read, the estimate becomes certain of the signal's aspects
     /// with the probability that the signal is noticed.
     pub(super) fn told(&mut self, now: SessionTime, location: LocationId) {
-        let kind = self.kitchen.location(location).kind;
-        let mut aspects = vec![AspectId::of_location(location)];
-        if let (LocationKind::Order, OrderContent::Dish(dish)) = (kind, self.shown.order(location)) {
-            aspects.push(self.kitchen.aspect_of_dish(dish));
-        }
+        let aspects = self.kitchen.aspects_at(self.shown, location);
         self.signals.end();
-        let noticed = self.model.signal.noticed_at(kind);
+        let noticed = self.model.signal.noticed_at(self.kitchen.location(location).kind);
         let standing = SignalOnDisplay { location, aspects, since: now, noticed, unread: 1.0 };
         if self.model.signal.takes_time() {
             self.signals.standing = Some(standing);

@@ -145,7 +145,14 @@ pub(super) fn new_session(
         Some(plan) => {
             let participant = options::participant_of_plan(plan, flags.code.as_deref());
             let participant = participant.map_err(wrong_setting)?;
-            Ok(series::operate_series(SeriesRequest { files, participant, out, compare, observe: flags.observe })?)
+            Ok(series::operate_series(SeriesRequest {
+                files,
+                participant,
+                out,
+                kind: flags.participant.map(ParticipantKind::from),
+                compare,
+                observe: flags.observe,
+            })?)
         }
     }
 }

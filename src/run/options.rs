@@ -49,6 +49,8 @@ pub struct SeriesRequest {
     pub participant: usize,
     /// Folder of the participant's recordings.
     pub out: PathBuf,
+    /// Kind of participant, if the command line names it.
+    pub kind: Option<ParticipantKind>,
     /// Comparison of wizard and assistants, if the console shows it.
     pub compare: Option<SenderComparisonSettings>,
     /// Address at which observers can watch the wizard's screen.

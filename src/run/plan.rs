@@ -78,7 +78,7 @@ fn remarks(study: &Study) -> Vec<String> {
 
 /// Why recordings that somebody made may not show in the progress.
 fn uncounted(counted: usize, simulated: u64, session: &Path, out: &Path) -> Option<String> {
-    let operate = operate_command(session, out, "CODE");
+    let operate = operate_command(session, out, "CODE", None);
     let out = out.display();
     match (counted, simulated) {
         (0, 0) => Some(format!("no recording of the plan is in {out}; --out DIR looks in another folder")),
@@ -216,7 +216,8 @@ pub fn describe(figures: &StudyProgress, columns: u16) -> String {
     let is_wide = figures.participants.iter().any(|one| 2 * width(&whole(one)) > columns);
     let one = |progress: &ParticipantProgress| {
         let first = if is_wide { group(progress) } else { whole(progress) };
-        let stands = stands(progress, &figures.session, &figures.recordings);
+        let operate = operate_command(&figures.session, &figures.recordings, &progress.code, None);
+        let stands = stands(progress, &operate);
         let stands = stands.split_once(": ").map_or(stands.as_str(), |(_, stands)| stands);
         let attempts = attempts(progress);
         let attempts = attempts.lines().map(|line| beside("", line, 6, columns));

@@ -16,7 +16,9 @@ use tomcom_core::base::text::count;
 use tomcom_session::files::SessionSetup;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::log::{LogReader, RecordingLock, RecordingWriteError};
-use tomcom_session::plan::{NextRecording, ParticipantProgress, PlanRecording, RecordingOutcome, Study, listed};
+use tomcom_session::plan::{
+    NextRecording, ParticipantProgress, PlanRecording, RecordingOutcome, Study, UNRECORDED, listed,
+};
 use tomcom_session::settings::ParticipantKind;
 use tomcom_session::wall_display::AnswerDevice;
 use tomcom_session::watcher::SenderComparisonSettings;
@@ -126,23 +128,31 @@ impl Planned {
     }
 
     fn stands(&self, progress: &ParticipantProgress) -> String {
-        stands(progress, &self.series.files.path, &self.series.out)
+        let SeriesRequest { files, out, kind, .. } = &self.series;
+        stands(progress, &operate_command(&files.path, out, &progress.code, *kind))
     }
 
     /// The question whether a recording is meant, where others in the folder are of another version of the plan.
     fn changed(&self, made: &[PlanRecording], code: &str) -> Result<Option<StartPrompt>, LiveError> {
         let others: Vec<&PlanRecording> = made.iter().filter(|made| made.step.digest != self.study.digest).collect();
-        let Some(last) = others.last() else { return Ok(None) };
-        let out = &self.series.out;
-        let header = LogReader::open(&out.join(&last.recording))?.header;
-        let kitchen = &self.series.files.kitchen;
-        let changed = listed(&self.study.changed_since(&header, [&kitchen.layout, &kitchen.recipes]));
+        let Some(mut since) = others.last() else { return Ok(None) };
+        let (out, kitchen) = (&self.series.out, &self.series.files.kitchen);
+        let mut changed = UNRECORDED.to_string();
+        // The last one may be of a kind that did not change, such as the practice.
+        for other in others.iter().rev() {
+            let header = LogReader::open(&out.join(&other.recording))?.header;
+            let shown = self.study.changed_since(&header, [&kitchen.layout, &kitchen.recipes]);
+            if !shown.is_empty() {
+                (since, changed) = (other, listed(&shown));
+                break;
+            }
+        }
         let number = count(others.len() as u64, "recording", "recordings");
         Ok(Some(StartPrompt::new(
             format!("{code}: THE PLAN HAS CHANGED"),
             vec![
                 format!("The plan is not that of {number} in the folder {}.", out.display()),
-                format!("Changed since {}: {changed}.", last.recording),
+                format!("Changed since {}: {changed}.", since.recording),
             ],
             vec!["record under the changed plan".to_string(), "leave: nothing is recorded".to_string()],
         )))
@@ -161,7 +171,11 @@ impl Planned {
                             "Found: {}, by `kind` under [participant] in the session file, or by --participant.",
                             kind.words()
                         ),
-                        format!("Right, as in {recording} of {code}: {}.", before.words()),
+                        format!(
+                            "Right, as in {recording} of {code}: {}, --participant {}.",
+                            before.words(),
+                            before.name()
+                        ),
                     ],
                     vec![format!("record with the {}", kind.words()), "leave: nothing is recorded".to_string()],
                 )));
@@ -256,8 +270,9 @@ impl Planned {
         if progress.consent || is_simulated {
             return Ok(Choice::Begin(Box::new(begun)));
         }
-        let on_display = self.study.plan.consent_on == AnswerDevice::Display
-            && station.display.ask_consent(begun.engine.session(), &self.study.plan.consent);
+        let asks_on_display = self.study.plan.consent_on == AnswerDevice::Display;
+        let text = asks_on_display.then_some(self.study.plan.consent.as_str());
+        let on_display = station.display.welcome(begun.engine.session(), text);
         match ask_consent(station, consent(&self.study, progress, &label, on_display), on_display).await? {
             Some((0, on)) => Ok(Choice::Begin(Box::new(begun.with_consent(Some(self.study.consent_given(on)))))),
             Some(_) => {
@@ -366,11 +381,9 @@ pub(super) fn slot_name(progress: &ParticipantProgress, slot: usize) -> String {
     }
 }
 
-/// Progress of a participant through the study plan, in one line; `session`: the plan's file, `out`: the recordings'
-/// folder.
-pub(super) fn stands(progress: &ParticipantProgress, session: &Path, out: &Path) -> String {
+/// Progress of a participant through the study plan, in one line. `operate`: the command that records the participant.
+pub(super) fn stands(progress: &ParticipantProgress, operate: &str) -> String {
     let (code, done, all) = (&progress.code, progress.done(), progress.steps.len());
-    let operate = operate_command(session, out, code);
     let excluded = match progress.excluded().count() {
         0 => String::new(),
         excluded => format!(", {excluded} excluded: repeat with {operate}"),
@@ -397,13 +410,14 @@ pub(super) fn stands(progress: &ParticipantProgress, session: &Path, out: &Path)
     stand + &excluded
 }
 
-/// The command that records a participant of a plan.
-pub(super) fn operate_command(session: &Path, out: &Path, code: &str) -> String {
+/// The command that records a participant of a plan. `kind`: that of the participant, if not the session file's.
+pub(super) fn operate_command(session: &Path, out: &Path, code: &str, kind: Option<ParticipantKind>) -> String {
+    let kind = kind.map_or(String::new(), |kind| format!(" --participant {}", kind.name()));
     let out = match out.to_str() {
         Some(DEFAULT_OUT) => String::new(),
         _ => format!(" --out {}", out.display()),
     };
-    format!("tomcom operate {} --code {code}{out}", session.display())
+    format!("tomcom operate {} --code {code}{kind}{out}", session.display())
 }
 
 /// The recordings of a study in the folder `out`, and the number of simulated ones.

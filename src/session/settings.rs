@@ -410,6 +410,16 @@ pub enum ParticipantKind {
 }
 
 impl ParticipantKind {
+    /// As in session files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            ParticipantKind::Simulated => "simulated",
+            ParticipantKind::Keyboard => "keyboard",
+            ParticipantKind::Display => "display",
+            ParticipantKind::External => "external",
+        }
+    }
+
     pub fn words(self) -> &'static str {
         match self {
             ParticipantKind::Simulated => "simulated participant",

@@ -228,7 +228,6 @@ fn periods<'a>(
     episodes.map(period).collect()
 }
 
-
 pub fn describe(figures: &WizardSummary) -> String {
     let measures = &figures.measures;
     let drawn = measures.key_to_display_ms.map_or("not recorded".to_string(), |times| {

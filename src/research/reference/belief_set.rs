@@ -11,9 +11,7 @@ use tomcom_core::base::rng::Stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::{
-    Agent, AspectId, AspectKind, ButtonId, Kitchen, LocationId, OrderContent, Press, State,
-};
+use tomcom_core::kitchen::{Agent, AspectId, AspectKind, ButtonId, Kitchen, LocationId, OrderContent, Press, State};
 use tomcom_core::mind::dirichlet::{Dirichlet, DirichletBelief};
 use tomcom_core::mind::filter::unseen::UnknownGazeTimer;
 use tomcom_core::mind::model::HumanModel;

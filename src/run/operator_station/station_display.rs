@@ -8,7 +8,7 @@ use tomcom_core::base::time::SessionTime;
 pub(in crate::run) use tomcom_devices::display::PageInput;
 use tomcom_devices::display::{DisplayServer, ParticipantResponse};
 use tomcom_devices::sight::page_language::DisplayWords;
-use tomcom_devices::sight::{ConsentHold, consent_sight, scene};
+use tomcom_devices::sight::{ConsentHold, consent_sight, scene, sight};
 use tomcom_session::settings::ParticipantKind;
 use tomcom_session::{Session, SessionSpec};
 
@@ -55,14 +55,15 @@ impl StationDisplay {
         Box::new(move || health.missing().filter(|_| screen.counts().page.is_none()))
     }
 
-    /// Lets the participant's page ask for consent to `text`; returns whether a page is connected.
-    pub fn ask_consent(&self, session: &Session, text: &str) -> bool {
+    /// Lets the participant's page welcome a participant before the recording, or ask for consent to `text`; returns
+    /// whether it asks. A page that stayed open thanks the participant before.
+    pub fn welcome(&self, session: &Session, text: Option<&str>) -> bool {
         let screen = self.0.as_ref().map(DisplayServer::screen);
         if let Some(screen) = &screen {
             screen.build(&scene(session));
-            screen.show(&consent_sight(session, text), None);
+            screen.show(&text.map_or_else(|| sight(session), |text| consent_sight(session, text)), None);
         }
-        screen.is_some()
+        text.is_some() && screen.is_some()
     }
 
     /// Waits for the next input of the participant's page; waits forever if there is no page.

@@ -34,7 +34,7 @@ impl StationDisplay {
     }
 
     /// Does nothing, since this build has no page that could ask for consent.
-    pub fn ask_consent(&self, _: &Session, _: &str) -> bool {
+    pub fn welcome(&self, _: &Session, _: Option<&str>) -> bool {
         false
     }
 

@@ -115,6 +115,9 @@ pub fn parse<T: ParsedFile>(path: &Path, text: &str) -> FileResult<T> {
 /// What the parser found, and what it expected instead, if it says so.
 fn told<T: DeserializeOwned>(text: &str, error: &toml::de::Error) -> (String, Option<String>) {
     let message = error.message();
+    if let Some((found, right)) = error.span().and_then(|span| no_value(text, span.start)) {
+        return (found, Some(right));
+    }
     if let Some((found, expected)) = message.split_once(", expected ") {
         let unknown = found.strip_prefix("unknown field `").and_then(|found| found.strip_suffix('`'));
         if let Some(place) = unknown.and_then(|name| Some(format!("{name} {}", places_of::<T>(name)?))) {
@@ -149,6 +152,36 @@ fn told<T: DeserializeOwned>(text: &str, error: &toml::de::Error) -> (String, Op
         return (setting, Some("an address of numbers, like \"192.168.1.10\"".to_string()));
     }
     (format!("{value}: {message}"), None)
+}
+
+/// A setting whose value is none in TOML, with what was probably meant: most often a word without quotes, of which the
+/// parser says only what else a value can begin with. `None` if the line at this place of the text is none of these.
+fn no_value(text: &str, at: usize) -> Option<(String, String)> {
+    if text.parse::<toml::Table>().is_ok() {
+        return None;
+    }
+    let start = text.get(..at)?.rfind('\n').map_or(0, |end| end + 1);
+    let (key, line) = text[start..].lines().next()?.split_once('=')?;
+    let (key, value) = (key.trim(), line.split('#').next()?.trim());
+    let is_setting = |value: &str| format!("{key} = {value}").parse::<toml::Table>().is_ok();
+    let goes_on =
+        value.starts_with('{') || (value.starts_with('[') && !value.ends_with(']')) || value.contains("\"\"\"");
+    if value.is_empty() || goes_on || is_setting(line) {
+        return None;
+    }
+    let is_number = |value: &str| value.starts_with(|first: char| first.is_ascii_digit() || first == '-');
+    let quoted = |value: &str| match value.trim() {
+        value if is_setting(value) => value.to_string(),
+        value => format!("\"{}\"", value.trim_matches(['"', '\''])),
+    };
+    let (right, rule) = match value.strip_prefix('[').and_then(|list| list.strip_suffix(']')) {
+        Some(list) => {
+            (format!("[{}]", list.split(',').map(quoted).collect::<Vec<_>>().join(", ")), "words stand between quotes")
+        }
+        None if is_number(value) => (value.replace(',', "."), "decimals follow a point"),
+        None => (quoted(value), "words stand between quotes, numbers, true and false do not"),
+    };
+    is_setting(&right).then(|| (format!("{key} = {value}"), format!("{key} = {right}: {rule}")))
 }
 
 /// The setting whose value, or part of whose value, stands at this place of a text: `tau = "high"`, or `"both" in

@@ -72,7 +72,8 @@ pub struct PlanDifference {
 }
 
 /// What may have changed where a recording shows no difference.
-const UNRECORDED: &str = "something that this recording does not show: participants, block, consent or questionnaires under [plan], or \
+/// What has changed since a recording with another digest in which nothing differs.
+pub const UNRECORDED: &str = "something that this recording does not show: participants, block, consent or questionnaires under [plan], or \
                           what another trial begins or ends with";
 /// Longest value that a message has in full, in characters, and most differences.
 const LONGEST_VALUE: usize = 60;
@@ -125,7 +126,7 @@ impl fmt::Display for PlanDifference {
 }
 
 impl Study {
-    /// What has changed since a recording of the plan that has another digest. `kitchen`: layout and recipes as they are now.
+    /// What has changed since a recording of the plan that has another digest, as far as the recording shows. `kitchen`: layout and recipes as they are now.
     pub fn changed_since(&self, recorded: &LogHeader, kitchen: [&RecordedFile; 2]) -> Vec<PlanDifference> {
         let files = [(&recorded.layout, kitchen[0]), (&recorded.recipes, kitchen[1])].into_iter();
         let mut changed: Vec<PlanDifference> = files
@@ -147,9 +148,6 @@ impl Study {
             if let Some(now) = &spec.step {
                 changed.extend(step.differences(now));
             }
-        }
-        if changed.is_empty() {
-            changed.push(PlanDifference::text(UNRECORDED.to_string()));
         }
         changed
     }

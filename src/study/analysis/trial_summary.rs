@@ -320,7 +320,9 @@ pub fn order_times(session: &Session) -> Vec<f64> {
             }
             TimelineEvent::Served { order } => {
                 let since = shown.remove(&order);
-                times.extend(since.map(|since| session.trial_clock_at(entry.time).secs_since(session.trial_clock_at(since))));
+                times.extend(
+                    since.map(|since| session.trial_clock_at(entry.time).secs_since(session.trial_clock_at(since))),
+                );
             }
             _ => {}
         }

@@ -90,6 +90,8 @@ const Probe = (() => {
   /** Draws the question, or the text before the first and after the last question; `practise`, in a tutorial, takes the answer, or null when the time is over. */
   function draw(sheet, probe, left, kit) {
     const { element, text, scene } = kit, words = scene.words, now = `${probe.probe}/${probe.question}/${probe.closed}`;
+    // What the keys are at stays through a state that changes nothing of the question.
+    const at = now === key && parts ? parts.all.querySelector(".at") : null;
     if (now !== key) [key, chosen, waits, isTold] = [now, null, false, false];
     shown = probe;
     const all = element("div", "probing"), bar = element("div", "left");
@@ -118,9 +120,13 @@ const Probe = (() => {
       update();
       arrange(all.querySelector(".choices"), probe.choices, scene);
       fit(all);
+      if (at) mark(parts.buttons.find((made) => isSame(made, at)));
     }
     run(bar, all.querySelector(".seconds"), left);
   }
+
+  /** Whether a button drawn anew gives the same answer. */
+  const isSame = (made, other) => ["believe", "unknown", "sure"].every((name) => made.dataset[name] === other.dataset[name]);
 
   /** Makes the words of choices and question smaller until they fit. */
   function fit(all) {
@@ -228,6 +234,9 @@ const Probe = (() => {
     return best;
   }
 
+  /** Where keys begin: behind what was touched, whose answer they would replace. */
+  const first = () => parts.all.querySelector(waits ? "[data-sure]" : ".chosen") ?? parts.buttons[0];
+
   /** A key or a gamepad button is pressed; returns whether it has a meaning here. */
   function press(name, isHeld) {
     const step = STEPS[name];
@@ -235,7 +244,7 @@ const Probe = (() => {
     if (!shown || shown.closed || !parts.buttons.length || isTold) return true;
     const at = parts.all.querySelector(".at");
     // The first key of any kind shows where the keys are.
-    if (step || !at) mark(at && parts.buttons.includes(at) ? next(at, step) : parts.buttons[0]);
+    if (step || !at) mark(at && parts.buttons.includes(at) ? next(at, step) : first());
     else if (!isHeld) {
       const { believe } = at.dataset, { className } = at;
       touch(at.dataset);

@@ -40,6 +40,8 @@ const REJECTIONS: usize = 16;
 const REJECTED_AGAIN_S: f64 = 10.0;
 /// Number of recent gaze samples that the gaze map draws.
 const TRAIL: usize = 240;
+/// Duration of the trail of gaze on the gaze map, in seconds.
+pub const TRAIL_S: f64 = 2.0;
 
 /// A dialog of the console that is open above its panels.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -507,7 +509,8 @@ pub struct Playback {
     pub event: usize,
     pub events: usize,
     /// The landmark that a key went to last, in words, with the replay's position there; shown while the replay is there.
-    pub landmark: Option<(usize, ReplayLandmark, String)>,
+    /// Without a kind it is an event to which the replay was moved step by step.
+    pub landmark: Option<(usize, Option<ReplayLandmark>, String)>,
     /// That no film of the recording has this moment, in words.
     pub outside_film: Option<&'static str>,
     pub follows: bool,
@@ -539,8 +542,8 @@ impl Playback {
         }
     }
 
-    /// The landmark at which the replay stands, if a key went there.
-    pub fn stands_at(&self) -> Option<(ReplayLandmark, &str)> {
+    /// The landmark or event at which the replay stands, if a key went there.
+    pub fn stands_at(&self) -> Option<(Option<ReplayLandmark>, &str)> {
         let there = self.landmark.as_ref().filter(|(event, ..)| *event == self.event);
         there.map(|(_, what, words)| (*what, words.as_str()))
     }

@@ -524,7 +524,7 @@ impl Playing {
         Ok(())
     }
 
-    /// Passes on all updates of the scene, in the order of time.
+    /// Passes on all updates of the scene, in the order of the events that make them.
     fn play(mut self, tell: impl Fn(u64), mut show: impl FnMut(SceneUpdate)) -> FileResult<Session> {
         let mut held: Option<(TimestampedEvent, Option<DirichletBelief>)> = None;
         loop {
@@ -538,7 +538,7 @@ impl Playing {
             }
             let Some(next) = next else { return Ok(self.replay.follower.session) };
             tell(next.stamped.seq);
-            let wants = self.scene.wants_belief(next.stamped.time);
+            let wants = self.scene.wants_belief(&next.stamped);
             let belief = wants.then(|| self.replay.follower.filter.belief().clone());
             held = Some((next.stamped, belief));
         }

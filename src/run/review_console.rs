@@ -288,7 +288,8 @@ impl Review {
     /// Passes the events from this position on to the comparison of wizard and assistants.
     fn tell(&mut self, from: usize) {
         if let Some(comparison) = &self.comparison {
-            self.film.each_from(from, |stamped| comparison.tell(stamped));
+            let read = self.film.read_events();
+            self.film.each(from..read, |stamped| comparison.tell(stamped));
         }
     }
 
@@ -377,7 +378,7 @@ impl ConsoleShell for Review {
         self.model.now = self.now;
         let known = self.model.errors.len();
         self.model.errors.extend_from_slice(&self.film.errors[known..]);
-        self.model.belief.catch_up(&self.film.beliefs);
+        self.film.show_beliefs(&mut self.model.belief);
         let (length, events) = self.film.length();
         let (event, cut) = (self.film.position, self.film.is_cut());
         let trial_length = self.film.trial_length();

@@ -5,6 +5,7 @@
 //! events at which a replay stops, and snapshots of the session, so that every move applies few events. The console can
 //! begin before the recording is read to its end.
 
+use std::ops::Range;
 use std::path::Path;
 
 use tomcom_core::base::time::SessionTime;
@@ -86,6 +87,8 @@ pub struct SeekableReplay {
     judged: usize,
     /// History of the belief estimate over the recording.
     pub beliefs: BeliefHistory,
+    /// For each snapshot in `beliefs` the number of events after which it was taken.
+    estimated_after: Vec<usize>,
     /// The shown session, after the first `position` events.
     pub session: Session,
     /// Number of events that have been applied to the shown session.
@@ -137,6 +140,7 @@ impl SeekableReplay {
             errors: Vec::new(),
             judged: 0,
             beliefs: BeliefHistory::default(),
+            estimated_after: Vec::new(),
             session,
             position: 0,
             chunks: Vec::new(),
@@ -204,7 +208,9 @@ impl SeekableReplay {
         let (stamped, index) = (event.stamped, self.read_events());
         let by_gaze = stamped.event.is_sample();
         let moment = BeliefSnapshot::new(&session.kitchen, session.state, belief, stamped.time, by_gaze);
-        self.beliefs.note(moment);
+        if self.beliefs.note(moment) {
+            self.estimated_after.push(index + 1);
+        }
         self.read_to = stamped.time;
         self.steps.extend(Step::at(index, &stamped).filter(|step| !self.is_blinded || step.is_shown_to_raters));
         match self.chunks.last_mut().filter(|last| last.number < CHUNK && last.place.is_in_file_of(&place)) {
@@ -289,9 +295,15 @@ impl SeekableReplay {
         Some(&events[within])
     }
 
-    /// Calls `visit` with the events from this position on that were read so far.
-    pub fn each_from(&mut self, position: usize, mut visit: impl FnMut(&TimestampedEvent)) {
-        for index in position..self.read_events() {
+    /// Makes `shown` the history of the belief estimate up to the shown position. Events can have the same time, so that
+    /// the time does not tell what the estimate had seen.
+    pub fn show_beliefs(&self, shown: &mut BeliefHistory) {
+        shown.follow(&self.beliefs, self.estimated_after.partition_point(|&after| after <= self.position));
+    }
+
+    /// Calls `visit` with the events between two positions, as far as they were read.
+    pub fn each(&mut self, positions: Range<usize>, mut visit: impl FnMut(&TimestampedEvent)) {
+        for index in positions {
             let Some(within) = self.load(index) else { return };
             self.loaded.iter().for_each(|(_, events)| visit(&events[within]));
         }
@@ -396,6 +408,16 @@ impl SeekableReplay {
             several => format!("{} to {}", index + 1, index + several),
         };
         Some(format!("{} {number} of {}: {}", what.name(), times.len(), self.told(what)?))
+    }
+
+    /// The event at which the replay stands, in words; `None` at the beginning, and for raters, who would read estimates
+    /// and causes.
+    pub fn named_event(&mut self) -> Option<String> {
+        let last = self.position.checked_sub(1).filter(|_| !self.is_blinded)?;
+        let within = self.load(last)?;
+        let stamped = &self.loaded.as_ref()?.1[within];
+        let words = event_words::words(stamped, &self.replay.follower);
+        Some(words.unwrap_or_else(|| stamped.event.kind().replace('_', " ")))
     }
 
     /// What the landmark of this kind is at which the replay stands.

@@ -16,9 +16,7 @@ use tomcom_core::base::text::count;
 use tomcom_session::files::SessionSetup;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::log::{LogReader, RecordingLock, RecordingWriteError};
-use tomcom_session::plan::{
-    NextRecording, ParticipantProgress, PlanRecording, RecordingOutcome, Study, UNRECORDED, listed,
-};
+use tomcom_session::plan::{NextRecording, ParticipantProgress, PlanRecording, RecordingOutcome, Study, listed};
 use tomcom_session::settings::ParticipantKind;
 use tomcom_session::wall_display::AnswerDevice;
 use tomcom_session::watcher::SenderComparisonSettings;
@@ -137,7 +135,7 @@ impl Planned {
         let others: Vec<&PlanRecording> = made.iter().filter(|made| made.step.digest != self.study.digest).collect();
         let Some(mut since) = others.last() else { return Ok(None) };
         let (out, kitchen) = (&self.series.out, &self.series.files.kitchen);
-        let mut changed = UNRECORDED.to_string();
+        let mut changed = listed(&[]);
         // The last one may be of a kind that did not change, such as the practice.
         for other in others.iter().rev() {
             let header = LogReader::open(&out.join(&other.recording))?.header;

@@ -406,6 +406,8 @@ def has_phases(tomcom, browser, folder):
     with console:
         console.wait_for("agrees")
         page = Page(browser, url())
+        # A page that stayed open has thanked somebody else.
+        page.stage("welcome")
         console.key("1")
         console.key("\r")
         page.stage("instruction")

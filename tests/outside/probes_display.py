@@ -187,6 +187,13 @@ def plays(tomcom, chromium, folder, kitchen, language):
         page.page.wait_for_timeout(800)
         ask_for_probe(console, page)
         number = page.probe()["probe"]
+        # The keys stay where they are when the page is drawn anew.
+        for _ in range(2):
+            page.page.keyboard.press("ArrowRight")
+        at = "document.querySelector('.probing .at')?.dataset.believe"
+        before = page.ask(at)
+        page.ask("Stage.resize()")
+        assert before and page.ask(at) == before, (before, page.ask(at))
         given.append(answer(page, "keys", 2))
         page.asks(2)
         tell = "kind: 'believe', choice: 1, sure: null"

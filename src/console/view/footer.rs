@@ -134,7 +134,7 @@ fn hint<'a>(binding: &'a KeyBinding, session: &Session, model: &'a ConsoleModel)
 }
 
 /// Draws the line of messages: the question whether to send a clicked signal, or the latest notice, or else what stays:
-/// the landmark at which a replay stands, or the reason for which the robot arm stopped itself.
+/// the landmark or event at which a replay stands, or the reason for which the robot arm stopped itself.
 pub fn message(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.message;
     if area.area() == 0 {

@@ -9,7 +9,7 @@ use super::paint::Painter;
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
 use crate::console::chord::KeyChord;
-use crate::console::console_model::ConsoleModel;
+use crate::console::console_model::{ConsoleModel, TRAIL_S};
 use crate::console::gaze_check::{AS_IT_IS, AccuracyCheckAction, CORRECTED, REPEAT, chosen};
 use crate::console::key_action::KeyLayer;
 use crate::console::kitchen_map::{KitchenMap, KitchenMapAreas};
@@ -28,8 +28,6 @@ use tomcom_session::{Session, TrialPhase};
 const GAZE_S: f64 = 3.0;
 /// Longest time since the last gaze sample for which the participant counts as looking there now, in seconds.
 const NOW_S: f64 = 0.2;
-/// Duration of the trail of gaze on the gaze map, in seconds.
-const TRAIL_S: f64 = 2.0;
 
 /// Draws the gaze panel: place and age of the gaze, and what is wrong with its samples.
 pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {

@@ -77,7 +77,7 @@ impl ShownOffer<'_> {
         if self.act.kind() == SignalKind::Proposal {
             return format!(" {words} ");
         }
-        let own = self.place(session).and_then(|place| model.keys.mark(place));
+        let own = self.place(session).and_then(|place| model.keys.of_signal(place));
         let own = own.map_or(String::new(), |key| format!(" [{key}]"));
         // The enter key is named only where it sends the offer: not in dialogs, replays, pauses, nor where the wizard
         // may not send.
@@ -359,7 +359,7 @@ fn worth(option: &SignalOption, session: &Session) -> String {
 /// The key of a listed signal, if the wizard may send it.
 fn key(option: &SignalOption, session: &Session, model: &ConsoleModel) -> Option<KeyChord> {
     let location = option.signal.location(&session.kitchen);
-    location.and_then(|location| model.keys.mark(location)).filter(|_| may_send(session, Sender::Wizard).is_ok())
+    location.and_then(|location| model.keys.of_signal(location)).filter(|_| may_send(session, Sender::Wizard).is_ok())
 }
 
 fn option_line(

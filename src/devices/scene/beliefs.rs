@@ -3,7 +3,7 @@
 
 use super::entity_content::{self, CURVES, EntityData, EntityUpdate, MarkShape, SceneLogLevel, SeriesStyle, slug};
 use super::happenings::{self, JudgedPressShown};
-use super::{SceneInputs, moment_on_clock};
+use super::{SceneInputs, SceneUpdate, moment_on_clock};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, AspectId, Kitchen, State, StateAspect};
 use tomcom_core::measures::sequences::FALSE_BELOW;
@@ -11,14 +11,14 @@ use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_core::mind::{RecordedBelief, RecordedEstimate};
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::history::wording;
-use tomcom_session::{Event, Session, TimelineEntry, TimelineEvent, TimestampedEvent};
+use tomcom_session::{Event, Session, TimelineEntry, TimelineEvent, TimestampedEvent, TrialPhase};
 
 /// Period of updates of the belief estimate between presses, in nanoseconds.
 const EVERY_NS: u64 = 200_000_000;
 /// State aspects with at least this P(truth), the estimated probability of the true value, are not listed on the page.
 const KNOWN: f64 = 0.95;
-/// A curve begins when a belief has been false so long; another one can have its colour so long after its end, when no view
-/// of the plot has both.
+/// A belief that is false so long has a curve, from when it turned false; another one can have its colour so long after its
+/// end, when no view of the plot has both.
 const LASTING: SessionTime = SessionTime(1_000_000_000);
 const APART: SessionTime = SessionTime(60_000_000_000);
 /// Path of the page in words.
@@ -46,6 +46,8 @@ struct BeliefCurve {
     /// Whether it goes on, and when something was drawn last.
     is_open: bool,
     last: SessionTime,
+    /// Until when the colour is another curve's; `None` if it was nobody's before.
+    taken: Option<SessionTime>,
 }
 
 /// State of the Rerun entities that show beliefs.
@@ -56,6 +58,11 @@ pub struct BeliefScene {
     drawn_since: Vec<Option<SessionTime>>,
     /// The curves of the plot: of what is believed wrong for a while, until it is known.
     curves: [Option<BeliefCurve>; entity_content::CURVES.len()],
+    /// For each state aspect without a curve that goes on, the rows of the last time before its belief turned false, and all
+    /// since: a curve has them once it begins.
+    past: Vec<Vec<SceneUpdate>>,
+    /// Those of curves that have just begun.
+    pub begun: Vec<SceneUpdate>,
     /// For each state aspect, since which press the simulated participant believes what it believes wrong.
     own_since: Vec<Option<(usize, SessionTime)>>,
     /// What the simulated participant believes wrong before its next press, in words.
@@ -90,6 +97,15 @@ fn wrong(aspect: &str) -> String {
     format!("{WRONG_BELIEFS}{}", slug(aspect))
 }
 
+/// Entity updates that give an aspect's curve and marks the colour of this place.
+fn coloured(aspect: &str, nth: usize) -> [EntityUpdate; 2] {
+    let style = SeriesStyle { name: None, colour: Some(CURVES[nth]) };
+    [
+        EntityUpdate::new(estimated(aspect), EntityData::Line(style.clone())),
+        EntityUpdate::new(held_truly(aspect), EntityData::Marks(style, MarkShape::Diamond)),
+    ]
+}
+
 /// Entity updates with the names and colours of the curves and marks.
 pub fn fixed_beliefs(kitchen: &Kitchen) -> Vec<EntityUpdate> {
     let of_aspect = |aspect: &StateAspect| {
@@ -104,6 +120,7 @@ pub fn fixed_beliefs(kitchen: &Kitchen) -> Vec<EntityUpdate> {
 }
 
 impl BeliefScene {
+    /// Whether the estimate is shown at this time, if nobody presses then.
     pub fn is_due(&self, now: SessionTime) -> bool {
         self.tick.is_none_or(|last| last < now.0 / EVERY_NS)
     }
@@ -120,20 +137,22 @@ impl BeliefScene {
     ) -> Vec<EntityUpdate> {
         let (mut rows, follower) = (Vec::new(), inputs.follower);
         for entry in new {
-            if let TimelineEvent::Press { agent: Agent::Human, before, .. } = entry.what {
-                rows.extend(self.pressed(session, entry, pressed));
-                self.before = Some(before);
+            if let TimelineEvent::Press { agent, before, .. } = entry.what {
+                if agent == Agent::Human {
+                    rows.extend(self.pressed(session, entry, pressed));
+                    self.before = Some(before);
+                }
                 // The estimate after the press is shown at the press's time.
                 self.tick = None;
             }
         }
         match &stamped.event {
             Event::ParticipantBelieves(witness) => rows.extend(self.truly(session, witness)),
-            Event::BeliefEstimated(witness) => rows.extend(self.before_press(session, witness, follower)),
+            Event::BeliefEstimated(witness) => rows.extend(self.before_press(session, stamped.seq, witness, follower)),
             _ => {}
         }
         let due = inputs.belief.filter(|_| self.is_due(stamped.time));
-        rows.extend(due.map(|belief| self.now(session, belief, follower)).unwrap_or_default());
+        rows.extend(due.map(|belief| self.now(session, stamped.seq, belief, follower)).unwrap_or_default());
         rows.extend(self.bars(session, follower));
         let shown = session.shown.as_ref();
         if shown.map(|shown| shown.since) != self.signal_since {
@@ -182,6 +201,7 @@ impl BeliefScene {
     fn before_press(
         &mut self,
         session: &Session,
+        step: u64,
         witness: &RecordedEstimate,
         follower: &SessionFollower,
     ) -> Vec<EntityUpdate> {
@@ -200,11 +220,17 @@ impl BeliefScene {
             let wrong = believed(kitchen, before, &held, since);
             self.press += &titled("Believed wrong before it, by the estimate", &wrong);
         }
-        self.drawn(session, &held, follower)
+        self.drawn(session, step, &held, follower)
     }
 
     /// Entity updates of the estimate after all events so far: the curves, and what is believed now, in words.
-    fn now(&mut self, session: &Session, belief: &DirichletBelief, follower: &SessionFollower) -> Vec<EntityUpdate> {
+    fn now(
+        &mut self,
+        session: &Session,
+        step: u64,
+        belief: &DirichletBelief,
+        follower: &SessionFollower,
+    ) -> Vec<EntityUpdate> {
         self.tick = Some(session.time.0 / EVERY_NS);
         let kitchen = &session.kitchen;
         let of_aspect = |aspect: usize| {
@@ -213,7 +239,7 @@ impl BeliefScene {
         };
         let held: Vec<Held> = (0..kitchen.aspects.len()).map(of_aspect).collect();
         self.estimate = told_now(session, &held, follower);
-        self.drawn(session, &held, follower)
+        self.drawn(session, step, &held, follower)
     }
 
     /// Bars of false beliefs that begin or end.
@@ -248,41 +274,61 @@ impl BeliefScene {
         was_error.then(|| EntityUpdate::new(ERRORS, EntityData::State(String::new(), entity_content::ERROR)))
     }
 
-    /// The curve of an aspect, with the updates that give it a colour if it is new; `None` if all colours are taken.
-    fn curve(&mut self, kitchen: &Kitchen, aspect: usize, now: SessionTime) -> Option<(usize, Vec<EntityUpdate>)> {
+    /// The place of an aspect's curve, and whether it is new; `None` if all colours are taken.
+    fn curve(&mut self, aspect: usize, now: SessionTime) -> Option<(usize, bool)> {
         let is_its = |curve: &Option<BeliefCurve>| curve.is_some_and(|curve| curve.aspect == aspect);
         if let Some(nth) = self.curves.iter().position(is_its) {
-            return Some((nth, Vec::new()));
+            return Some((nth, false));
         }
         let is_free =
             |curve: &Option<BeliefCurve>| curve.is_none_or(|curve| !curve.is_open && now - curve.last > APART);
         let nth = self.curves.iter().position(is_free)?;
-        self.curves[nth] = Some(BeliefCurve { aspect, is_open: false, last: now });
-        let (name, style) = (&kitchen.aspects[aspect].name, SeriesStyle { name: None, colour: Some(CURVES[nth]) });
-        let line = EntityUpdate::new(estimated(name), EntityData::Line(style.clone()));
-        Some((nth, vec![line, EntityUpdate::new(held_truly(name), EntityData::Marks(style, MarkShape::Diamond))]))
+        let taken = self.curves[nth].map(|curve| curve.last + APART);
+        self.curves[nth] = Some(BeliefCurve { aspect, is_open: false, last: now, taken });
+        Some((nth, true))
     }
 
     /// Rows of the curves: of aspects that are believed wrong for a while, until they are known.
-    fn drawn(&mut self, session: &Session, held: &[Held], follower: &SessionFollower) -> Vec<EntityUpdate> {
+    fn drawn(&mut self, session: &Session, step: u64, held: &[Held], follower: &SessionFollower) -> Vec<EntityUpdate> {
         let kitchen = &session.kitchen;
         let mut rows = Vec::new();
         let now = session.time;
+        let is_trial = matches!(session.phase, TrialPhase::Running | TrialPhase::Paused);
+        self.past.resize(kitchen.aspects.len(), Vec::new());
         for one in held {
-            let is_open = |curve: &BeliefCurve| curve.aspect == one.aspect && curve.is_open;
+            let name = &kitchen.aspects[one.aspect].name;
+            let value = EntityUpdate::new(estimated(name), EntityData::Value(one.p_truth));
+            let moment = SceneUpdate { time: now, trial: session.trial_clock(now), step, rows: vec![value.clone()] };
+            let was_open = self.curves.iter().flatten().any(|curve| curve.aspect == one.aspect && curve.is_open);
+            let is_wrong = is_trial && one.p_truth < FALSE_BELOW;
             let is_false = follower.false_beliefs.at(AspectId(one.aspect as u8), now);
-            let lasts = one.p_truth < FALSE_BELOW && is_false.is_some_and(|held| now - held.began >= LASTING);
-            if !lasts && !self.curves.iter().flatten().any(is_open) {
+            let lasts = is_wrong && is_false.is_some_and(|held| now - held.began >= LASTING);
+            if !is_wrong {
+                // A press has two rows.
+                self.past[one.aspect].retain(|moment| moment.time == now);
+            }
+            if !was_open && !lasts {
+                self.past[one.aspect].push(moment);
                 continue;
             }
-            let Some((nth, colours)) = self.curve(kitchen, one.aspect, now) else { continue };
-            rows.extend(colours);
-            let (name, is_open) = (&kitchen.aspects[one.aspect].name, one.p_truth < KNOWN);
-            rows.push(EntityUpdate::new(estimated(name), EntityData::Value(one.p_truth)));
-            if !is_open {
-                rows.push(EntityUpdate::new(estimated(name), EntityData::NoValue));
+            let mut past = std::mem::take(&mut self.past[one.aspect]);
+            let Some((nth, _)) = self.curve(one.aspect, now) else { continue };
+            let Some(curve) = &mut self.curves[nth] else { continue };
+            if !was_open {
+                past.retain(|moment| curve.taken.is_none_or(|taken| moment.time > taken));
+                // The colour holds from the first row on, also if marks had it from a later one on.
+                let first = past.first_mut().map_or(&mut rows, |first| &mut first.rows);
+                for (index, colour) in coloured(name, nth).into_iter().enumerate() {
+                    first.insert(index, colour);
+                }
+                self.begun.extend(past);
             }
-            self.curves[nth] = Some(BeliefCurve { aspect: one.aspect, is_open, last: now });
+            (curve.is_open, curve.last) = (one.p_truth < KNOWN, now);
+            rows.push(value);
+            if !curve.is_open {
+                rows.push(EntityUpdate::new(estimated(name), EntityData::NoValue));
+                self.past[one.aspect].push(moment);
+            }
         }
         rows
     }
@@ -307,9 +353,12 @@ impl BeliefScene {
         self.own = titled("Believed wrong before it, by the simulated participant", &wrong);
         let mut rows = Vec::new();
         for one in held.iter().filter(|one| one.p_truth < FALSE_BELOW) {
-            let Some((nth, colours)) = self.curve(kitchen, one.aspect, now) else { continue };
-            rows.extend(colours);
-            rows.push(EntityUpdate::new(held_truly(&kitchen.aspects[one.aspect].name), EntityData::Value(one.p_truth)));
+            let Some((nth, is_new)) = self.curve(one.aspect, now) else { continue };
+            let name = &kitchen.aspects[one.aspect].name;
+            if is_new {
+                rows.extend(coloured(name, nth));
+            }
+            rows.push(EntityUpdate::new(held_truly(name), EntityData::Value(one.p_truth)));
             self.curves[nth].iter_mut().for_each(|curve| curve.last = now);
         }
         rows

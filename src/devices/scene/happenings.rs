@@ -162,6 +162,12 @@ pub fn protocol(event: &ProtocolEvent) -> EntityUpdate {
     say("trial/events", SceneLogLevel::Info, event_words::protocol(event), entity_content::QUIET)
 }
 
+/// Words of a time mark, whose own line has none.
+pub fn mark_worded(session: &Session, note: &str) -> EntityUpdate {
+    let text = format!("note: {}", event_words::mark_worded(session, note));
+    say("wizard/hands", SceneLogLevel::Info, text, entity_content::SIGNAL)
+}
+
 /// A press of the human as it was judged.
 #[derive(Clone, Copy, Debug)]
 pub struct JudgedPressShown<'a> {

@@ -117,22 +117,26 @@ impl SessionScene {
         self.next.saturating_sub(1)
     }
 
-    /// Whether an update of the belief estimate is due.
-    pub fn wants_belief(&self, time: SessionTime) -> bool {
-        self.belief.is_due(time)
+    /// Whether an update of the belief estimate is due at the next event.
+    pub fn wants_belief(&self, next: &TimestampedEvent) -> bool {
+        self.belief.is_due(next.time) || matches!(next.event, Event::Press { .. })
     }
 
-    /// Applies the next event and returns the entity updates. An event that is not valid in the session's state, or that the
-    /// scene has already shown, gives no updates.
-    pub fn see(&mut self, stamped: &TimestampedEvent, inputs: SceneInputs<'_>) -> Option<SceneUpdate> {
+    /// Applies the next event and returns the entity updates: first those of earlier times, of curves that begin. An event that
+    /// is not valid in the session's state, or that the scene has already shown, gives no updates.
+    pub fn see(&mut self, stamped: &TimestampedEvent, inputs: SceneInputs<'_>) -> Vec<SceneUpdate> {
         if stamped.seq < self.next {
-            return None;
+            return Vec::new();
         }
-        let applied = apply(&mut self.session, stamped).ok()?;
+        let Ok(applied) = apply(&mut self.session, stamped) else { return Vec::new() };
         self.next = stamped.seq + 1;
         let rows = self.changes(stamped, &applied.change, inputs);
         let trial = self.session.trial_clock(stamped.time);
-        (!rows.is_empty()).then_some(SceneUpdate { time: stamped.time, trial, step: stamped.seq, rows })
+        let mut moments = std::mem::take(&mut self.belief.begun);
+        if !rows.is_empty() {
+            moments.push(SceneUpdate { time: stamped.time, trial, step: stamped.seq, rows });
+        }
+        moments
     }
 
     fn changes(
@@ -166,6 +170,7 @@ impl SessionScene {
             Event::OfferClosed { reason, .. } => rows.push(happenings::offer_closed(*reason)),
             Event::Probe(event) => rows.extend(self.probes.follow(session, event, inputs.belief)),
             Event::Protocol(event) => rows.push(happenings::protocol(event)),
+            Event::MarkerWorded { note, .. } if !note.is_empty() => rows.push(happenings::mark_worded(session, note)),
             _ => {}
         }
         let pressed = happenings::judged(stamped, &inputs.follower.judged);

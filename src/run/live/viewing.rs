@@ -64,7 +64,7 @@ impl StreamedSession {
         let follower = engine.follower();
         for (index, stamped) in events.iter().enumerate() {
             let belief = (index + 1 == events.len()).then(|| engine.belief());
-            self.stream.tell(self.scene.see(stamped, SceneInputs { follower, belief }).into_iter().collect());
+            self.stream.tell(self.scene.see(stamped, SceneInputs { follower, belief }));
         }
     }
 

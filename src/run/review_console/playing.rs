@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use super::Review;
 use crate::console::console_model::NoticeLevel;
-use crate::console::console_model::{Playback, ReplayAction, SPEEDS};
+use crate::console::console_model::{Playback, ReplayAction, SPEEDS, TRAIL_S};
 use tomcom_core::base::text::count;
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::Event;
@@ -30,8 +30,8 @@ impl Review {
             }
             ReplayAction::Faster => self.playback(|playback| playback.speed = (playback.speed + 1).min(speeds)),
             ReplayAction::Slower => self.playback(|playback| playback.speed = playback.speed.saturating_sub(1)),
-            ReplayAction::StepForward => self.stand_at(self.film.next_step()),
-            ReplayAction::StepBack => self.stand_at(self.film.last_step()),
+            ReplayAction::StepForward => self.step_to(self.film.next_step()),
+            ReplayAction::StepBack => self.step_to(self.film.last_step()),
             ReplayAction::On(what) => self.look_for(what, true),
             ReplayAction::BackTo(what) => self.look_for(what, false),
             ReplayAction::ToStart => self.stand_at(0),
@@ -77,7 +77,7 @@ impl Review {
     fn look_for(&mut self, what: ReplayLandmark, forward: bool) {
         // Where it stands at a landmark of another kind, one of this kind can have the same time.
         let stands_at = self.model.playback.as_ref().and_then(Playback::stands_at);
-        let is_told = stands_at.is_some_and(|(at, _)| at == what);
+        let is_told = stands_at.is_some_and(|(at, _)| at == Some(what));
         match self.film.landmark(what, forward, !is_told) {
             Some(position) => {
                 self.stand_at(position);
@@ -110,7 +110,14 @@ impl Review {
     /// Shows which landmark of this kind the replay stands at, if it stands at one, and what it is.
     fn name_landmark(&mut self, what: ReplayLandmark) {
         let (position, said) = (self.film.position, self.film.named(what));
-        self.playback(|playback| playback.landmark = said.map(|said| (position, what, said)));
+        self.playback(|playback| playback.landmark = said.map(|said| (position, Some(what), said)));
+    }
+
+    /// Moves the replay to the next or previous event, and shows which event that is.
+    fn step_to(&mut self, position: usize) {
+        self.stand_at(position);
+        let (position, said) = (self.film.position, self.film.named_event());
+        self.playback(|playback| playback.landmark = said.map(|said| (position, None, said)));
     }
 
     /// Goes to a session time, and plays on if it played.
@@ -121,8 +128,15 @@ impl Review {
     }
 
     fn wind(&mut self, position: usize) {
-        self.model.trail.clear();
         self.film.wind(position);
+        // The gaze map shows what it shows after playing up to here.
+        self.model.trail.clear();
+        let from = self.film.until(self.film.time() - SessionTime::from_secs_f64(TRAIL_S));
+        self.film.each(from..self.film.position, |stamped| {
+            if let Event::Gaze(sample) = stamped.event {
+                self.model.see(stamped.time, sample);
+            }
+        });
     }
 
     /// Advances the replay by the time that has passed since the last frame.

@@ -85,14 +85,15 @@ pub struct BeliefHistory {
 }
 
 impl BeliefHistory {
-    /// Adds a snapshot, unless only gaze samples with little effect came since the previous one.
-    pub fn note(&mut self, mut moment: BeliefSnapshot) {
+    /// Adds a snapshot, unless only gaze samples with little effect came since the previous one; returns whether it was
+    /// added.
+    pub fn note(&mut self, mut moment: BeliefSnapshot) -> bool {
         if let Some(last) = self.moments.last().filter(|_| moment.by_gaze) {
             let mut pairs = last.held.iter().zip(moment.held.iter());
             let is_news = pairs.any(|(then, now)| f64::from((now.p_truth - then.p_truth).abs()) >= JUMP);
             // In a pause the estimate stands although gaze samples come.
             if !is_news && (moment.time.secs_since(last.time) < STEP_S || moment.held == last.held) {
-                return;
+                return false;
             }
         }
         if let Some(last) = self.moments.last() {
@@ -100,6 +101,7 @@ impl BeliefHistory {
             moment.wrong_since = pairs.map(|(since, earlier)| since.and(*earlier).or(*since)).collect();
         }
         self.moments.push(moment);
+        true
     }
 
     /// Removes snapshots older than `kept_s` on the trial's clock, so that memory does not grow with the session.
@@ -112,11 +114,13 @@ impl BeliefHistory {
         }
     }
 
-    /// Appends the later snapshots of another history of the same session.
-    pub fn catch_up(&mut self, other: &BeliefHistory) {
-        let known = self.moments.len().min(other.moments.len());
-        self.moments.extend_from_slice(&other.moments[known..]);
+    /// Makes this history the first `number` snapshots of another history of the same session.
+    pub fn follow(&mut self, other: &BeliefHistory, number: usize) {
+        self.moments.truncate(number);
+        let known = self.moments.len();
+        self.moments.extend_from_slice(&other.moments[known..number]);
     }
+
     /// Up to and including a time.
     pub fn until(&self, time: SessionTime) -> &[BeliefSnapshot] {
         &self.moments[..self.moments.partition_point(|moment| moment.time <= time)]

@@ -12,7 +12,7 @@ use crate::questionnaire::AnswerValue;
 use crate::tracker::{TrackerEvent, TrackerRecording};
 use crate::tutorial::TutorialEvent;
 use crate::wall_display::{AnswerDevice, DisplayEvent};
-use crate::{ArmStatus, Event, TimelineEvent, TimestampedEvent, TrialPhase};
+use crate::{ArmStatus, Event, Session, TimelineEvent, TimestampedEvent, TrialPhase};
 use tomcom_core::base::text::{count, printable};
 use tomcom_core::communication::concept::{BenefitUnit, ConceptName};
 use tomcom_core::communication::offer::OfferedAdvice;
@@ -30,6 +30,15 @@ pub const HEADING: &str = " trial time  what happened";
 /// line: gaze samples, fixations, blinks, drawn signals, arm motion, estimates without a probable false belief, changes
 /// between normal and reduced speed, and recommendations of no communication.
 pub fn line(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<String> {
+    let (words, session) = (words(stamped, follower)?, &follower.session);
+    Some(match session.phase {
+        TrialPhase::Ready => format!("{:>11}  {words}", "before"),
+        _ => format!("{:>9} s  {words}", session.trial_clock(stamped.time).in_seconds()),
+    })
+}
+
+/// The words of [`line`]. The follower can have seen later events.
+pub fn words(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<String> {
     let kitchen = &follower.session.kitchen;
     let words = match &stamped.event {
         Event::Gaze(_) | Event::SignalDrawn { .. } | Event::RobotMoves(_) => return None,
@@ -109,7 +118,8 @@ pub fn line(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<St
         Event::Marker { note, .. } if note.is_empty() => "marker".to_string(),
         Event::Marker { note, observer: None } => format!("marker: {note}"),
         Event::Marker { note, observer: Some(observer) } => format!("remark of {observer}: {note}"),
-        Event::MarkerWorded { marker, note } => format!("words of marker {marker}: {note}"),
+        Event::MarkerWorded { note, .. } if note.is_empty() => "a time mark stays without words".to_string(),
+        Event::MarkerWorded { note, .. } => mark_worded(&follower.session, note),
         Event::Probe(event) => probe(event),
         Event::Protocol(event) => protocol(event),
         Event::Tracker(event) => tracker(event)?,
@@ -119,11 +129,7 @@ pub fn line(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<St
         Event::SessionEnded => "session over".to_string(),
     };
     // Control characters are escaped: notes and names of devices can contain them, and they would disturb the terminal.
-    let (words, session) = (printable(&words), &follower.session);
-    Some(match session.phase {
-        TrialPhase::Ready => format!("{:>11}  {words}", "before"),
-        _ => format!("{:>9} s  {words}", session.trial_clock(stamped.time).in_seconds()),
-    })
+    Some(printable(&words).into_owned())
 }
 
 fn preflight(checks: &[PreflightCheck], overridden: bool) -> String {
@@ -152,7 +158,8 @@ fn on_screen(screen: &WizardScreenContent) -> String {
 }
 
 fn verdict(stamped: &TimestampedEvent, follower: &SessionFollower) -> String {
-    let judged = follower.judged.last().filter(|press| press.seq == stamped.seq);
+    let index = follower.judged.binary_search_by_key(&stamped.seq, |press| press.seq);
+    let judged = index.ok().map(|index| &follower.judged[index]);
     match (&stamped.event, judged) {
         (Event::Press { agent: Agent::Human, .. }, None) => " (does not count)".to_string(),
         (_, Some(press)) if press.verdict.error => {
@@ -251,6 +258,14 @@ pub fn noted_words(note: &str, observer: Option<&str>) -> String {
         (note, None) => note.to_string(),
         (note, Some(observer)) => format!("{observer}: {note}"),
     }
+}
+
+/// The words of a time mark, which were typed later, with the time that they are about.
+pub fn mark_worded(session: &Session, note: &str) -> String {
+    let is_it = |what: &TimelineEvent| matches!(what, TimelineEvent::Noted(Event::Marker { note: words, observer: None }) if words == note);
+    let mark = session.timeline.iter().rev().find(|entry| is_it(&entry.what));
+    let at = mark.map_or(String::new(), |mark| format!(" at {}", session.trial_clock_at(mark.time)));
+    format!("words of the time mark{at}: {note}")
 }
 
 /// Why the arm stands that the wizard did not stop.

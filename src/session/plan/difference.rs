@@ -72,8 +72,7 @@ pub struct PlanDifference {
 }
 
 /// What may have changed where a recording shows no difference.
-/// What has changed since a recording with another digest in which nothing differs.
-pub const UNRECORDED: &str = "something that this recording does not show: participants, block, consent or questionnaires under [plan], or \
+const UNRECORDED: &str = "something that this recording does not show: participants, block, consent or questionnaires under [plan], or \
                           what another trial begins or ends with";
 /// Longest value that a message has in full, in characters, and most differences.
 const LONGEST_VALUE: usize = 60;
@@ -153,8 +152,11 @@ impl Study {
     }
 }
 
-/// In one line; of many, the first.
+/// What changed in another version of a plan, in one line; of many, the first.
 pub fn listed(changed: &[PlanDifference]) -> String {
+    if changed.is_empty() {
+        return UNRECORDED.to_string();
+    }
     let named: Vec<String> = changed.iter().take(MOST_NAMED).map(PlanDifference::to_string).collect();
     let more = changed.len().saturating_sub(MOST_NAMED);
     named.join("; ") + &if more == 0 { String::new() } else { format!("; and {more} more") }

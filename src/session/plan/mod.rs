@@ -12,7 +12,7 @@ mod difference;
 mod study;
 
 use crate::person_code;
-pub use crate::plan::difference::{PlanDifference, UNRECORDED, differences, listed};
+pub use crate::plan::difference::{PlanDifference, differences, listed};
 pub use crate::plan::study::{
     NextRecording, ParticipantProgress, PhaseStand, PlanRecording, PlannedTrial, PlannedTrialProgress,
     RecordingOutcome, Study, TrialAttempt, WantedRecording,

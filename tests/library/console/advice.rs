@@ -86,6 +86,10 @@ fn the_offer_alone_is_inverse_in_the_colour_of_signals() {
         let mut paused = advised(true);
         paused.at(22.6, Event::TrialPaused);
         assert_eq!(inverse_signals(&paused, size).len(), 1, "{size:?}");
+        let mut replayed = advised(true);
+        replayed.replays(Playback::new("S001".to_string()));
+        replayed.shows(size, &["SHOW RECIPE OF ORDER 1"]);
+        replayed.hides(size, &["[q]"]);
         let mut shown = advised(false);
         let signal = Signal::Highlight("cutting_board".to_string());
         shown.at(30.0, Event::SignalShown { by: Sender::Wizard, signal, offer: None });

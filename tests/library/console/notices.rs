@@ -8,6 +8,7 @@ use tomcom::console::preflight::checks;
 use tomcom::console::{ConsoleCommand, ConsoleMessage, KeyBindings, KeyFileBindings, update};
 use tomcom_core::robot::{ArmStage, SafetyMode};
 use tomcom_session::TimelineEvent;
+use tomcom_session::history::event_words;
 use tomcom_session::preflight_checks::PreflightVerdict;
 use tomcom_session::tracker::TrackerEvent;
 
@@ -141,6 +142,8 @@ fn a_time_mark_is_set_at_once_and_gets_its_words_when_the_trial_stands() {
     let worded = Event::MarkerWorded { marker: marks[0], note: "looked away".to_string() };
     assert_eq!(input(stage.key(KeyCode::Enter)), Some(worded.clone()));
     stage.at(28.0, worded);
+    let told = event_words::mark_worded(&stage.session, "looked away");
+    assert_eq!(told, "words of the time mark at 0:20: looked away");
     stage.shows((80, 24), &["The time mark at 0:21: its words"]);
     // A mark may stay without words.
     let without = Event::MarkerWorded { marker: marks[1], note: String::new() };

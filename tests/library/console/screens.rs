@@ -661,7 +661,7 @@ fn a_replay_says_at_which_landmark_it_stands_for_as_long_as_it_stands_there() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     let words = "error 1 of 17: take salmon: cause (simulated participant): false belief about recipe of crab maki (order 2); \
                  order 1 needs tuna; costs 2 presses";
-    let landmark = Some((10, ReplayLandmark::Error, words.to_string()));
+    let landmark = Some((10, Some(ReplayLandmark::Error), words.to_string()));
     stage.replays(Playback { length: at(40.0), event: 10, events: 90, landmark, ..Playback::new("S001".to_string()) });
     stage.model.clock = at(3600.0);
     stage.shows_everywhere(&["error 1 of 17: take salmon", "costs 2 presses"]);

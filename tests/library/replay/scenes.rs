@@ -35,8 +35,10 @@ fn shown(recording: &Path) -> (Vec<SceneUpdate>, Vec<TimestampedEvent>) {
 fn a_scene_shows_every_press_signal_and_sample_once_at_its_time() {
     for name in ["format-3-hand.jsonl", "format-3-simulated.jsonl"] {
         let (moments, events) = shown(&Path::new("tests/golden").join(name));
-        let times: Vec<SessionTime> = moments.iter().map(|moment| moment.time).collect();
-        assert!(times.is_sorted(), "{name}: moments come in the order of their times");
+        // Only curves that begin have rows of earlier times.
+        let is_of_curves = |moment: &SceneUpdate| moment.rows.iter().all(|row| row.entity.starts_with("human/belief/"));
+        let in_order = || moments.iter().filter(|&moment| !is_of_curves(moment));
+        assert!(in_order().map(|moment| moment.time).is_sorted(), "{name}: moments come in the order of their times");
         let steps_of = |entity: &str| -> Vec<(u64, SessionTime)> {
             let rows = |moment: &SceneUpdate| moment.rows.iter().filter(|row| row.entity == entity).count();
             moments.iter().flat_map(|moment| vec![(moment.step, moment.time); rows(moment)]).collect()
@@ -71,7 +73,7 @@ fn a_scene_shows_every_press_signal_and_sample_once_at_its_time() {
                 && matches!(&row.shown, EntityData::Words { text, .. } if !text.starts_with("wizard: took"))
         });
         assert_eq!(sent.count(), signals.len(), "{name}");
-        assert!(moments.iter().map(|moment| moment.trial).is_sorted(), "{name}: the trial's clock never goes back");
+        assert!(in_order().map(|moment| moment.trial).is_sorted(), "{name}: the trial's clock never goes back");
         let started = events.iter().find(|stamped| stamped.event == Event::TrialStarted).expect("a trial").time;
         for moment in moments.iter().filter(|moment| moment.time <= started) {
             assert_eq!(moment.trial, SessionTime::ZERO, "{name}: before the trial its clock stands");
@@ -238,8 +240,9 @@ fn labels_keep_apart_and_bars_end_with_the_trial() {
 
 #[test]
 fn curves_are_of_false_beliefs_and_no_two_of_a_minute_have_one_colour() {
-    let (moments, _) = shown(Path::new("tests/golden/format-3-offers.jsonl"));
-    let (mut colours, mut drawn, mut open) = (BTreeMap::new(), BTreeMap::new(), BTreeSet::new());
+    let (moments, events) = shown(Path::new("tests/golden/format-3-offers.jsonl"));
+    let (mut colours, mut drawn, mut curves) = (BTreeMap::new(), BTreeMap::new(), Vec::new());
+    let mut open: BTreeMap<&str, Vec<(SessionTime, f64)>> = BTreeMap::new();
     for (moment, row) in moments.iter().flat_map(|moment| moment.rows.iter().map(move |row| (moment, row))) {
         let Some((kind, aspect)) = row.entity.strip_prefix("human/belief/").and_then(|rest| rest.split_once('/'))
         else {
@@ -249,13 +252,12 @@ fn curves_are_of_false_beliefs_and_no_two_of_a_minute_have_one_colour() {
             EntityData::Line(style) => {
                 colours.insert(aspect, style.colour.expect("a colour"));
             }
-            EntityData::NoValue => {
-                open.remove(aspect);
-            }
+            EntityData::NoValue => curves.extend(open.remove_entry(aspect)),
             EntityData::Value(p_truth) => {
-                assert!(*p_truth < FALSE_BELOW || open.contains(aspect), "{row:?}");
                 if kind == "estimated" {
-                    open.insert(aspect);
+                    open.entry(aspect).or_default().push((moment.time, *p_truth));
+                } else {
+                    assert!(*p_truth < FALSE_BELOW, "{row:?}");
                 }
                 let of_colour = drawn.insert(colours[aspect], (aspect, moment.time));
                 let is_apart = |(other, last)| other == aspect || moment.time.secs_since(last) > 60.0;
@@ -265,6 +267,33 @@ fn curves_are_of_false_beliefs_and_no_two_of_a_minute_have_one_colour() {
         }
     }
     assert!(drawn.len() > 2 && drawn.len() <= 6, "{drawn:?}");
+    // A curve begins with the values before and after the belief turned false, of a press those at its time.
+    curves.extend(open);
+    let time_of = |by: Agent| {
+        let is_by = move |event: &Event| matches!(event, Event::Press { agent, .. } if *agent == by);
+        let presses = events.iter().filter(move |stamped| is_by(&stamped.event));
+        presses.map(|stamped| stamped.time).collect::<BTreeSet<SessionTime>>()
+    };
+    let (human, robot) = (time_of(Agent::Human), time_of(Agent::Robot));
+    let mut falls = [0, 0];
+    for (aspect, rows) in curves {
+        assert!(rows.is_sorted_by_key(|(time, _)| *time), "{aspect}: {rows:?}");
+        let is_fall = |nth: usize| rows[nth].1 >= FALSE_BELOW && rows[nth + 1].1 < FALSE_BELOW;
+        let fall = (0..rows.len() - 1).rev().find(|&nth| rows[nth].0 == rows[0].0 && is_fall(nth));
+        assert!(fall.is_some() || rows[0].1 < FALSE_BELOW, "{aspect}: {rows:?}");
+        let Some(nth) = fall else { continue };
+        let (before, turned, last) = (rows[nth].0, rows[nth + 1].0, rows[rows.len() - 1].0);
+        assert!(last.secs_since(turned) >= 1.0, "{aspect}: {rows:?}");
+        // What was forgotten since the row before is false before a press already.
+        if human.contains(&turned) && before != turned || !human.contains(&turned) && !robot.contains(&turned) {
+            continue;
+        }
+        falls[usize::from(robot.contains(&turned))] += 1;
+        let bars = texts(&moments, &format!("wrong_belief/{aspect}"));
+        let begins = bars.iter().any(|(moment, text)| moment.time == turned && !text.is_empty());
+        assert!(begins, "{aspect}: no bar begins at {turned:?}");
+    }
+    assert!(falls.iter().all(|&count| count > 0), "{falls:?} curves that fall at presses of the human, of the robot");
 }
 
 #[test]

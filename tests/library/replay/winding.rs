@@ -5,6 +5,7 @@ use std::cell::Cell;
 use tomcom::run::seekable_replay::SeekableReplay;
 use tomcom_session::TimelineEvent;
 use tomcom_session::files::file_error::FileResult;
+use tomcom_session::history::belief_track::BeliefHistory;
 use tomcom_session::replay::ReplayLandmark;
 
 use super::{SESSIONS, simulated};
@@ -46,6 +47,48 @@ fn a_recording_can_be_wound_forward_and_back() {
         }
         assert_eq!(film.position, 0, "as many steps back as forward");
     }
+}
+
+/// A press and what the participant believed before it have the same time: time alone does not tell the estimate.
+#[test]
+fn a_position_shows_the_same_estimate_by_whatever_way_one_comes_there() {
+    let out = simulated("default.toml", ArmKind::Timed, "ways", 1, 11);
+    let recording = only_recording(&out);
+    let mut film = SeekableReplay::open(&recording).expect("a recording");
+    let error = film.landmark(ReplayLandmark::Error, true, false).expect("an error");
+    film.wind(error);
+    let (time, presses) = (film.time(), film.session.all_presses());
+    let mut shown = BeliefHistory::default();
+    film.show_beliefs(&mut shown);
+    let after = shown.until(time).to_vec();
+    let mut press = error;
+    while film.session.all_presses() == presses {
+        press = film.position;
+        film.wind(film.last_step());
+    }
+    assert_eq!(film.time(), time, "before the press, at its time");
+    let before = film.position;
+    let mut read = SeekableReplay::begin(&recording).expect("a recording");
+    let left = Cell::new(before);
+    read.read_while(|| left.replace(left.get().saturating_sub(1)) > 0).expect("events");
+    assert_eq!(read.read_events(), before);
+    let estimated = read.beliefs.until(time);
+    assert_ne!(after, estimated, "the press is evidence");
+    for way in [before, 0, error, film.length().1] {
+        film.wind(way);
+        film.show_beliefs(&mut shown);
+        film.wind(before);
+        film.show_beliefs(&mut shown);
+        assert_eq!(shown.until(time), estimated, "by way of {way}");
+    }
+    film.wind(press);
+    let named = film.named_event().expect("a press");
+    assert!(named.starts_with("human presses ") && named.contains("(error, costs "), "{named}");
+    film.wind(0);
+    assert_eq!(film.named_event(), None);
+    let mut blind = film.blinded();
+    blind.wind(press);
+    assert_eq!(blind.named_event(), None, "raters read no cause");
 }
 
 /// A console begins before the recording is read: the end is known at once, and what is read later is the same.

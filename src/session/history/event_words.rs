@@ -37,7 +37,7 @@ pub fn line(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<St
     })
 }
 
-/// The words of [`line`]. The follower can have seen later events.
+/// The words of [`line()`]. The follower can have seen later events.
 pub fn words(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<String> {
     let kitchen = &follower.session.kitchen;
     let words = match &stamped.event {

@@ -51,7 +51,8 @@ class Terminal:
     def until(self, is_there, seconds=120):
         """Milliseconds from now, or from the start if that is the first time, until the screen shows this."""
         began, self.began = self.began or time.monotonic(), None
-        end = began + seconds
+        # What is there already has arrived.
+        end, arrived = began + seconds, time.monotonic()
         while not is_there(self.screen.display):
             assert time.monotonic() < end, "it did not appear:\n" + "\n".join(self.screen.display)
             if not select.select([self.master], [], [], 0.5)[0]:

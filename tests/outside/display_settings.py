@@ -74,6 +74,8 @@ def counts(tomcom, chromium, folder, seed):
         assert abs((at - left()) - (time.monotonic() - began)) < 1.2, (at, left())
         console.key(".")
         page.stage("paused")
+        # Also between two questions of a probe, whose answers would lie there.
+        assert page.ask("getComputedStyle(document.querySelector('.kitchen')).visibility") == "hidden"
         stands = left()
         page.page.wait_for_timeout(2500)
         assert left() == stands

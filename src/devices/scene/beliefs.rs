@@ -17,8 +17,8 @@ use tomcom_session::{Event, Session, TimelineEntry, TimelineEvent, TimestampedEv
 const EVERY_NS: u64 = 200_000_000;
 /// State aspects with at least this P(truth), the estimated probability of the true value, are not listed on the page.
 const KNOWN: f64 = 0.95;
-/// A belief that is false so long has a curve, from when it turned false; another one can have its colour so long after its
-/// end, when no view of the plot has both.
+/// A belief that is false so long has a curve, from when it turned false; another one has its colour only so long after its
+/// end, when no view of the plot has both, if there are colours enough.
 const LASTING: SessionTime = SessionTime(1_000_000_000);
 const APART: SessionTime = SessionTime(60_000_000_000);
 /// Path of the page in words.
@@ -274,16 +274,19 @@ impl BeliefScene {
         was_error.then(|| EntityUpdate::new(ERRORS, EntityData::State(String::new(), entity_content::ERROR)))
     }
 
-    /// The place of an aspect's curve, and whether it is new; `None` if all colours are taken.
+    /// The place of an aspect's curve, and whether it is new; `None` if a curve of each colour goes on.
     fn curve(&mut self, aspect: usize, now: SessionTime) -> Option<(usize, bool)> {
         let is_its = |curve: &Option<BeliefCurve>| curve.is_some_and(|curve| curve.aspect == aspect);
         if let Some(nth) = self.curves.iter().position(is_its) {
             return Some((nth, false));
         }
-        let is_free =
-            |curve: &Option<BeliefCurve>| curve.is_none_or(|curve| !curve.is_open && now - curve.last > APART);
-        let nth = self.curves.iter().position(is_free)?;
-        let taken = self.curves[nth].map(|curve| curve.last + APART);
+        // A colour of a minute ago is in no view with the new one; without such, that of the curve that ended first.
+        let is_apart = |curve: &BeliefCurve| !curve.is_open && now - curve.last > APART;
+        let apart = self.curves.iter().position(|curve| curve.as_ref().is_none_or(is_apart));
+        let ended =
+            self.curves.iter().enumerate().filter_map(|(nth, curve)| Some((nth, curve.filter(|it| !it.is_open)?)));
+        let nth = apart.or_else(|| ended.min_by_key(|(_, curve)| curve.last).map(|(nth, _)| nth))?;
+        let taken = self.curves[nth].map(|curve| curve.last);
         self.curves[nth] = Some(BeliefCurve { aspect, is_open: false, last: now, taken });
         Some((nth, true))
     }

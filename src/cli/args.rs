@@ -21,6 +21,7 @@ use super::tournaments::{ProtocolArgs, TournamentArgs};
 use super::tutorial_alone::TutorialArgs;
 use super::video::VideoArgs;
 use super::wizard::{CompareArgs, TrainArgs};
+use crate::run::options::DEFAULT_OUT;
 use tomcom_core::mind::fitting::HumanModelParameter;
 use tomcom_session::headless::SimulationShard;
 
@@ -108,7 +109,7 @@ pub(super) struct PlanArgs {
     #[arg(default_value = "sessions/study.toml")]
     pub(super) session: PathBuf,
     /// Folder of the recordings.
-    #[arg(long, default_value = "sessions")]
+    #[arg(long, default_value = DEFAULT_OUT)]
     pub(super) out: PathBuf,
     /// Freeze the plan before the study (preregistration): write plan, definitions and analysis with a digest to this
     /// new file, which tomcom study --frozen checks.
@@ -334,7 +335,7 @@ pub(super) struct DoctorArgs {
     /// Session file with the settings; by default sessions/default.toml.
     pub(super) session: Option<PathBuf>,
     /// Folder for recordings.
-    #[arg(long, default_value = "sessions")]
+    #[arg(long, default_value = DEFAULT_OUT)]
     pub(super) out: PathBuf,
     /// Also write a file to send with the report of a fault: versions, machine, checks, the session without codes, and the
     /// last warnings of the newest recording in the folder for recordings. Read it before you send it.

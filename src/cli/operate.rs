@@ -10,7 +10,7 @@ use super::failure::{Failure, wrong_setting};
 use super::lab::tell_carried;
 use super::list::chosen;
 use super::output::{put, put_aside};
-use crate::run::options::{self, DEFAULT_SESSION, SeriesRequest, SessionStart, SettingOverrides};
+use crate::run::options::{self, DEFAULT_OUT, DEFAULT_SESSION, SeriesRequest, SessionStart, SettingOverrides};
 use crate::run::series::{self, SeriesOutcome};
 use crate::run::{files, plan};
 use tomcom_core::communication::settings::ConceptSpec;
@@ -85,7 +85,7 @@ pub(super) struct OperateFlags {
     pub(super) frozen: Option<PathBuf>,
     /// Folder in which the recording's folder is created. Not with --continue: a further part is created beside the
     /// recording.
-    #[arg(long, default_value = "sessions")]
+    #[arg(long, default_value = DEFAULT_OUT)]
     pub(super) out: PathBuf,
 }
 

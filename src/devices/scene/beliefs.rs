@@ -17,9 +17,10 @@ use tomcom_session::{Event, Session, TimelineEntry, TimelineEvent, TimestampedEv
 const EVERY_NS: u64 = 200_000_000;
 /// State aspects with at least this P(truth), the estimated probability of the true value, are not listed on the page.
 const KNOWN: f64 = 0.95;
-/// A belief that is false so long has a curve, from when it turned false; another one has its colour only so long after its
-/// end, when no view of the plot has both, if there are colours enough.
+/// A belief that is false for so long gets a curve, which begins where it turned false.
 const LASTING: SessionTime = SessionTime(1_000_000_000);
+/// For so long after its end a curve keeps its colour for itself, if there are enough colours: then no view of the plot shows
+/// two curves of one colour.
 const APART: SessionTime = SessionTime(60_000_000_000);
 /// Path of the page in words.
 const PAGE: &str = "human/now";
@@ -321,9 +322,7 @@ impl BeliefScene {
                 past.retain(|moment| curve.taken.is_none_or(|taken| moment.time > taken));
                 // The colour holds from the first row on, also if marks had it from a later one on.
                 let first = past.first_mut().map_or(&mut rows, |first| &mut first.rows);
-                for (index, colour) in coloured(name, nth).into_iter().enumerate() {
-                    first.insert(index, colour);
-                }
+                first.splice(0..0, coloured(name, nth));
                 self.begun.extend(past);
             }
             (curve.is_open, curve.last) = (one.p_truth < KNOWN, now);

@@ -262,8 +262,8 @@ pub fn noted_words(note: &str, observer: Option<&str>) -> String {
 
 /// The words of a time mark, which were typed later, with the time that they are about.
 pub fn mark_worded(session: &Session, note: &str) -> String {
-    let is_it = |what: &TimelineEvent| matches!(what, TimelineEvent::Noted(Event::Marker { note: words, observer: None }) if words == note);
-    let mark = session.timeline.iter().rev().find(|entry| is_it(&entry.what));
+    let worded = TimelineEvent::Noted(Event::Marker { note: note.to_string(), observer: None });
+    let mark = session.timeline.iter().rev().find(|entry| entry.what == worded);
     let at = mark.map_or(String::new(), |mark| format!(" at {}", session.trial_clock_at(mark.time)));
     format!("words of the time mark{at}: {note}")
 }

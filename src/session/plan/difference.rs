@@ -125,7 +125,8 @@ impl fmt::Display for PlanDifference {
 }
 
 impl Study {
-    /// What has changed since a recording of the plan that has another digest, as far as the recording shows. `kitchen`: layout and recipes as they are now.
+    /// What has changed since a recording of the plan that has another digest, as far as the recording shows. `kitchen`:
+    /// layout and recipes as they are now.
     pub fn changed_since(&self, recorded: &LogHeader, kitchen: [&RecordedFile; 2]) -> Vec<PlanDifference> {
         let files = [(&recorded.layout, kitchen[0]), (&recorded.recipes, kitchen[1])].into_iter();
         let mut changed: Vec<PlanDifference> = files

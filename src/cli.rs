@@ -232,7 +232,6 @@ fn exclude(args: &ExcludeArgs) -> Result<(), Failure> {
 /// Excludes all recordings of a participant in a folder, or includes them again; those that are so already stay as they
 /// are.
 fn exclude_participant(args: &ExcludeArgs, code: &str, reason: &str) -> Result<(), Failure> {
-    list::exists(&args.recording)?;
     let (mut ruled, mut left) = (Vec::new(), Vec::new());
     for recording in list::of_participant(&args.recording, code)? {
         let log = &mut LogReader::open(&recording)?;

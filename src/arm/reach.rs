@@ -10,7 +10,7 @@ use tomcom_core::kitchen::{Agent, ButtonId, Kitchen};
 use tomcom_core::robot::{AbortReason, JOINTS, JointAngles};
 
 use crate::inverse::turned_towards;
-use crate::kinematics::{CollisionSolid, LinkShape, SerialArm};
+use crate::kinematics::{ArmLink, CollisionSolid, LinkShape, SerialArm};
 
 /// The height of a button above the table, in metres.
 pub const BUTTON_M: f64 = 0.02;
@@ -164,24 +164,13 @@ pub struct CapsuleDistance {
 }
 
 impl Capsule {
-    /// The capsule that approximates a solid; for a box, the capsule lies along its longest side.
-    fn from_solid(solid: &CollisionSolid, base_from_link: &Isometry3<f64>) -> Capsule {
-        let (half_m, radius_m, axis) = match solid.shape {
-            LinkShape::Cylinder { radius_m, length_m } => ((length_m / 2.0 - radius_m).max(0.0), radius_m, 2),
-            LinkShape::Sphere { radius_m } => (0.0, radius_m, 2),
-            LinkShape::Box { half_m } => {
-                let axis = (0..3).fold(0, |best, axis| if half_m[axis] > half_m[best] { axis } else { best });
-                let radius_m = half_m[(axis + 1) % 3].max(half_m[(axis + 2) % 3]);
-                ((half_m[axis] - radius_m).max(0.0), radius_m, axis)
-            }
-        };
+    /// The capsule within a cylinder; the arm has no other shapes.
+    fn from_solid(solid: &CollisionSolid, base_from_link: &Isometry3<f64>) -> Option<Capsule> {
+        let LinkShape::Cylinder { radius_m, length_m } = solid.shape else { return None };
+        let half_m = (length_m / 2.0 - radius_m).max(0.0);
         let place = base_from_link * solid.link_from_solid;
-        let end = |side: f64| {
-            let mut end = Point3::origin();
-            end[axis] = side * half_m;
-            place * end
-        };
-        Capsule { ends_m: [end(-1.0), end(1.0)], radius_m }
+        let end = |side: f64| place * Point3::new(0.0, 0.0, side * half_m);
+        Some(Capsule { ends_m: [end(-1.0), end(1.0)], radius_m })
     }
 
     pub fn nearest(&self, other: &Capsule) -> CapsuleDistance {
@@ -220,11 +209,10 @@ impl SerialArm {
     pub fn capsules(&self, joints: &JointAngles) -> Vec<(usize, Capsule)> {
         let places = self.forward(joints);
         let links = self.links.iter().zip(&places).enumerate();
-        links
-            .flat_map(|(at, (link, place))| {
-                link.solids.iter().map(move |solid| (at, Capsule::from_solid(solid, place)))
-            })
-            .collect()
+        let of_link = |(at, (link, place)): (usize, (&ArmLink, &Isometry3<f64>))| -> Vec<(usize, Capsule)> {
+            link.solids.iter().filter_map(|solid| Some((at, Capsule::from_solid(solid, place)?))).collect()
+        };
+        links.flat_map(of_link).collect()
     }
 
     /// The first obstruction that is nearer to the arm than `KEPT_M`. Only the stick may touch the table.
@@ -259,11 +247,7 @@ fn can_meet(link: usize, other: usize) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::FRAC_PI_2;
-
     use super::*;
-
-    const BENT: JointAngles = [0.0, -1.6, 1.8, -1.8, -FRAC_PI_2, 0.0];
 
     fn check(joints: JointAngles, expected: Option<Obstruction>) {
         assert_eq!(SerialArm::ur5().in_the_way(&joints, &ArmSurroundings::default()), expected, "{joints:?}");

@@ -1,13 +1,12 @@
 //! The commands of the program `tomcom` and their arguments.
 
 use std::path::PathBuf;
-use tomcom_core::communication::settings::ConceptSpec;
 
 use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 
 #[cfg(feature = "ur")]
 use super::arm_server::ArmArgs;
-use super::choices::{ArmArg, SimulatedCondition, concept};
+use super::choices::{ArmArg, SimulatedCondition, concept, whole};
 use super::data::{CodesArgs, ForgetArgs};
 use super::exports::ExportArgs;
 use super::lab::NewArgs;
@@ -21,7 +20,8 @@ use super::tournaments::{ProtocolArgs, TournamentArgs};
 use super::tutorial_alone::TutorialArgs;
 use super::video::VideoArgs;
 use super::wizard::{CompareArgs, TrainArgs};
-use crate::run::options::DEFAULT_OUT;
+use crate::run::options::{DEFAULT_OUT, DEFAULT_SESSION};
+use tomcom_core::communication::settings::ConceptSpec;
 use tomcom_core::mind::fitting::HumanModelParameter;
 use tomcom_session::headless::SimulationShard;
 
@@ -132,11 +132,11 @@ pub(super) struct PlanArgs {
 )]
 pub(super) struct SimulateArgs {
     /// The session file to simulate.
-    #[arg(default_value = "sessions/default.toml")]
+    #[arg(default_value = DEFAULT_SESSION)]
     pub(super) session: PathBuf,
     /// Number of trials; each has its own orders and participant and does not depend on their number. With a plan: the
     /// first trials of the plan, participant by participant. Default: 1, or the whole plan.
-    #[arg(long, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    #[arg(long, value_parser = whole(1_u64..=100_000))]
     pub(super) trials: Option<u64>,
     /// Simulate one shard of the trials, such as "2/8", the second of eight disjoint shards, for job arrays.
     #[arg(long, value_name = "PART/PARTS", default_value = "1/1", hide_default_value = true)]
@@ -193,7 +193,7 @@ pub(super) struct FitArgs {
     #[arg(long)]
     pub(super) probes: bool,
     /// Largest number of likelihood evaluations.
-    #[arg(long, default_value_t = 600, value_parser = clap::value_parser!(u64).range(10..=100_000))]
+    #[arg(long, default_value_t = 600, value_parser = whole(10_u64..=100_000))]
     pub(super) tries: u64,
     /// Write the fitted parameters to this file.
     #[arg(long, value_name = "FILE")]

@@ -1,5 +1,9 @@
 //! Values of command line options that stand for session settings.
 
+use std::fmt::Display;
+use std::ops::RangeInclusive;
+use std::str::FromStr;
+
 use clap::ValueEnum;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
@@ -42,6 +46,17 @@ pub(super) enum ConditionArg {
     Wizard,
     /// The assistant sends signals by itself.
     Assistant,
+}
+
+/// Reads a whole number in this range.
+pub(super) fn whole<N>(range: RangeInclusive<N>) -> impl Fn(&str) -> Result<N, String> + Clone + Send + Sync + 'static
+where
+    N: FromStr + PartialOrd + Display + Clone + Send + Sync + 'static,
+{
+    move |text: &str| {
+        let right = || format!("wanted a whole number from {} to {}", range.start(), range.end());
+        text.parse().ok().filter(|number| range.contains(number)).ok_or_else(right)
+    }
 }
 
 /// Reads one of these values by its name; lists of choices say what each is.

@@ -10,12 +10,14 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use super::args::Cli;
 use tomcom_session::log::LOG_NAME;
 
-/// Adds to the message about an unknown command which command takes a file of this name, and to that about an option's
-/// values how they are separated; other messages, and those about a word that is like a command, stay as they are.
+/// Adds to the message about an unknown command which command takes a file of this name, to that about an option's values
+/// how they are separated, and to that about --csv which command writes tables; other messages, and those about a word that
+/// is like a command, stay as they are.
 pub(super) fn add(mut error: clap::Error) -> clap::Error {
-    if let Some(hint) = with_commas(&error) {
-        // One of the values would be suggested alone.
-        error.remove(ContextKind::SuggestedValue);
+    // One of the values would be suggested alone, or another format.
+    let better = with_commas(&error).map(|hint| (ContextKind::SuggestedValue, hint));
+    if let Some((worse, hint)) = better.or_else(|| Some((ContextKind::SuggestedArg, tables(&error)?))) {
+        error.remove(worse);
         error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![StyledStr::from(hint)]));
         return error;
     }
@@ -34,6 +36,13 @@ pub(super) fn add(mut error: clap::Error) -> clap::Error {
     }
     error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![hint]));
     error
+}
+
+/// Where tables come from, for somebody who asks another command for them.
+fn tables(error: &clap::Error) -> Option<String> {
+    let Some(ContextValue::String(option)) = error.get(ContextKind::InvalidArg) else { return None };
+    let is_it = error.kind() == ErrorKind::UnknownArgument && option == "--csv";
+    is_it.then(|| "tables (CSV) are written by 'tomcom study'".to_string())
 }
 
 /// How several values of an option are typed, where other signs than commas separate them.

@@ -7,9 +7,10 @@ use clap::Args;
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::list::{exists, gathered, near_code};
+use super::list::gathered;
 use super::output::{OutputFormat, print, progress, put, put_aside};
 use crate::run::forget::{self, ParticipantData};
+use crate::run::options::DEFAULT_OUT;
 use crate::run::review_console;
 use tomcom_core::base::text::count;
 use tomcom_session::person_code;
@@ -51,7 +52,6 @@ pub(super) struct CodesArgs {
 }
 
 pub(super) fn codes(args: &CodesArgs) -> Result<(), Failure> {
-    args.recordings.iter().try_for_each(|path| exists(path))?;
     let is_codes = |path: &&PathBuf| {
         path.is_file() && path.extension().is_some_and(|end| ["csv", "eaf", "boris"].iter().any(|codes| end == *codes))
     };
@@ -177,7 +177,7 @@ pub(super) struct ForgetArgs {
     /// The code of the participant.
     code: String,
     /// Folder in which to look for the participant's data.
-    #[arg(long = "in", value_name = "FOLDER", default_value = "sessions")]
+    #[arg(long = "in", value_name = "FOLDER", default_value = DEFAULT_OUT)]
     folder: PathBuf,
     /// Delete without asking for confirmation.
     #[arg(long)]
@@ -198,6 +198,7 @@ struct ForgetSummary<'a> {
     tables: Vec<(String, usize)>,
     trainings: Vec<String>,
     left: Vec<LeftSummary<'a>>,
+    naming: Vec<String>,
 }
 
 #[derive(Debug, Serialize)]
@@ -219,6 +220,7 @@ impl ForgetSummary<'_> {
             tables: found.tables.iter().map(|(path, rows)| (told(path), rows.len())).collect(),
             trainings: found.trainings.iter().map(|(path, _)| told(path)).collect(),
             left: found.left.iter().map(|left| LeftSummary { path: told(&left.path), reason: &left.reason }).collect(),
+            naming: all(&found.naming),
         }
     }
 }
@@ -238,15 +240,11 @@ pub(super) fn forget(args: &ForgetArgs) -> Result<(), Failure> {
     let done = if deletes { forget::delete(found)? } else { found };
     print(args.format, &ForgetSummary::new(&done, deletes), || match deletes {
         true => format!("deleted:\n{}{}", listed(&done), left(&done)),
-        false if done.left.is_empty() => {
-            let near = near_code(&args.folder, code);
-            format!("there are no files of participant {code} in {}{near}\n", args.folder.display())
+        false => {
+            let deletable = if done.left.is_empty() { "" } else { " that can be deleted" };
+            let (folder, near) = (args.folder.display(), &done.near);
+            format!("there are no files of participant {code}{deletable} in {folder}{near}\n{}", left(&done))
         }
-        false => format!(
-            "there are no files of participant {code} that can be deleted in {}\n{}",
-            args.folder.display(),
-            left(&done)
-        ),
     })?;
     if deletes && done.left.is_empty() { Ok(()) } else { Err(Failure::No) }
 }
@@ -296,10 +294,18 @@ fn listed(found: &ParticipantData) -> String {
     recordings.chain(files).chain(tables).chain(trainings).collect()
 }
 
-/// What is not deleted although it is or may be about the participant, as text with a line and a reason each, and what
-/// cannot be known.
+/// What is not deleted although it is or may be about the participant, as text with a line and a reason each, what still
+/// names the code, and what cannot be known.
 fn left(found: &ParticipantData) -> String {
     let lines: String = found.left.iter().map(|left| format!("  {}: {}\n", left.path.display(), left.reason)).collect();
     let lines = if lines.is_empty() { lines } else { format!("not deleted:\n{lines}") };
-    lines + UNKNOWN
+    let naming: String = found.naming.iter().map(|path| format!("  {}\n", path.display())).collect();
+    let naming = match naming.is_empty() {
+        true => naming,
+        false => format!(
+            "these stay, and name {} (session files, frozen plans, corrected recordings of others):\n{naming}",
+            found.code
+        ),
+    };
+    lines + &naming + UNKNOWN
 }

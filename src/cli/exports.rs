@@ -6,9 +6,9 @@ use clap::{ArgGroup, Args};
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::list::exists;
 use super::mcap_exports::{self, ExportedMcap};
 use super::output::{OutputFormat, print, progress};
+use crate::run::options::DEFAULT_OUT;
 use tomcom_study::annotation_export::{self, AnnotationFormat, AnnotationSummary};
 use tomcom_study::bids_export::{self, BidsSummary};
 use tomcom_study::files::recordings;
@@ -29,7 +29,7 @@ use tomcom_study::files::recordings;
                   tomcom export sessions/2026-03-14-P07-1 --mcap\nMore: docs/exports.md")]
 pub(super) struct ExportArgs {
     /// Folders of recordings, or recordings.
-    #[arg(value_name = "RECORDING", default_value = "sessions")]
+    #[arg(value_name = "RECORDING", default_value = DEFAULT_OUT)]
     recordings: Vec<PathBuf>,
     /// Write a BIDS data set into this folder, which must be empty or not exist yet.
     #[arg(long, value_name = "DIR")]
@@ -115,7 +115,6 @@ pub(super) fn export(args: &ExportArgs) -> Result<(), Failure> {
 fn meant(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut all = Vec::new();
     for path in paths {
-        exists(path)?;
         let found = if path.is_dir() { recordings::of_folder(path)? } else { vec![path.clone()] };
         for recording in found {
             if !all.contains(&recording) {

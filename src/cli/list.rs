@@ -9,9 +9,9 @@ use clap::Args;
 use super::failure::Failure;
 use super::output::{OutputFormat, print, progress, put_aside};
 use crate::run::doctor::columns;
+use crate::run::options::DEFAULT_OUT;
 use crate::run::recording_list::{self, RecordingListDetail};
 use tomcom_core::base::text::count;
-use tomcom_session::files::near_path;
 use tomcom_session::log::{LOG_NAME, LogReader};
 use tomcom_session::person_code;
 use tomcom_study::files::recordings;
@@ -28,12 +28,15 @@ const MOST_NAMED: usize = 12;
 /// aborted), running, unreadable. Sorted by code and date.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples: tomcom list sessions\n          tomcom list recordings --format json\nMore: docs/recordings.md"
+    after_help = "Examples: tomcom list sessions P07\n          tomcom list recordings --format json\nMore: docs/recordings.md"
 )]
 pub(super) struct ListArgs {
     /// A folder with recordings in it.
-    #[arg(value_name = "DIR", default_value = "sessions")]
+    #[arg(value_name = "DIR", default_value = DEFAULT_OUT)]
     folder: PathBuf,
+    /// Only the recordings whose line has all of these words, such as P07 or excluded.
+    #[arg(value_name = "WORD")]
+    words: Vec<String>,
     /// Output format.
     #[arg(long, value_enum, default_value = "text")]
     format: OutputFormat,
@@ -41,11 +44,14 @@ pub(super) struct ListArgs {
 
 /// Runs the command `tomcom list DIR`.
 pub(super) fn list(args: &ListArgs) -> Result<(), Failure> {
-    exists(&args.folder)?;
     let bar = progress(0, "recordings");
     let begun = |number: usize| bar.set_length(number as u64);
-    let (list, _) = recording_list::list(&args.folder, RecordingListDetail::WithErrors, begun, || bar.inc(1))?;
+    let (mut list, _) = recording_list::list(&args.folder, RecordingListDetail::WithErrors, begun, || bar.inc(1))?;
     bar.finish_and_clear();
+    list.recordings.retain(|one| {
+        let line = one.cells().join(" ").to_lowercase();
+        args.words.iter().all(|word| line.contains(&word.to_lowercase()))
+    });
     print(args.format, &list, || list.describe(columns()))
 }
 
@@ -73,7 +79,6 @@ fn told(found: GatheredRecordings) -> GatheredRecordings {
 /// Finds the recording at a path: of a folder of recordings the only one, or the one that the user chooses at the terminal.
 /// `does`: what is done with it, as the name of a key.
 pub(super) fn chosen(path: &Path, does: &'static str) -> Result<PathBuf, Failure> {
-    exists(path)?;
     if !path.is_dir() || path.join(LOG_NAME).exists() {
         return Ok(path.to_path_buf());
     }
@@ -118,21 +123,4 @@ pub(super) fn of_participant(folder: &Path, code: &str) -> Result<Vec<PathBuf>, 
         )));
     }
     Ok(found)
-}
-
-/// "; did you mean P07?": a participant recorded in this folder whose code is near; empty if there is none.
-pub(super) fn near_code(folder: &Path, code: &str) -> String {
-    let readers = recordings::of_folder(folder).into_iter().flatten().filter_map(|path| LogReader::open(&path).ok());
-    person_code::did_you_mean(code, readers.map(|reader| reader.header.session.participant.code))
-}
-
-/// Refuses a path that does not exist, and suggests an existing path with a similar name.
-pub(super) fn exists(path: &Path) -> Result<(), Failure> {
-    let Some(near) = Some(path).filter(|path| !path.exists()).and_then(near_path::nearest) else { return Ok(()) };
-    Err(Failure::Wrong(miette::miette!(
-        help = near.display().to_string(),
-        "{} does not exist; did you mean {}?",
-        path.display(),
-        near.display()
-    )))
 }

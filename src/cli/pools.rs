@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::choices::ArmArg;
+use super::choices::{ArmArg, whole};
 use super::failure::{Failure, wrong_argument};
 use super::lab::tell_carried;
 use super::output::{OutputFormat, print, progress, put_aside};
@@ -40,10 +40,10 @@ pub(super) struct PowerArgs {
     #[command(flatten)]
     pool: PoolArgs,
     /// Numbers of participants for which the power is computed, separated by commas.
-    #[arg(long, value_name = "N,N,…", value_delimiter = ',', default_value = SIZES, value_parser = size)]
+    #[arg(long, value_name = "N,N,…", value_delimiter = ',', default_value = SIZES, value_parser = whole(4_u16..=1000))]
     sizes: Vec<u16>,
     /// Number of studies that are drawn for each number of participants.
-    #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u64).range(20..=100_000))]
+    #[arg(long, default_value_t = 1000, value_parser = whole(20_u64..=100_000))]
     studies: u64,
     /// Simulate this effect by thinning the events of unassisted trials, instead of using the trials of each condition:
     /// the ratio of each condition's rate to that of the first, above 0; 1 gives the type I error.
@@ -80,7 +80,7 @@ struct PoolArgs {
     /// The session file with the plan.
     plan: PathBuf,
     /// Number of simulated participants in the pool, whatever the plan says.
-    #[arg(long = "pool", visible_alias = "participants", value_name = "PARTICIPANTS", default_value_t = 200, value_parser = clap::value_parser!(u32).range(2..=100_000))]
+    #[arg(long = "pool", visible_alias = "participants", value_name = "PARTICIPANTS", default_value_t = 200, value_parser = whole(2_u32..=100_000))]
     participants: u32,
     /// Seed of all random numbers; by default that of the session file.
     #[arg(long, conflicts_with = "from")]
@@ -112,11 +112,6 @@ struct PoolArgs {
 fn ratio(text: &str) -> Result<f64, String> {
     let right = || "wanted a ratio of rates above 0, at most 1, such as 0.7".to_string();
     text.parse().ok().filter(|&ratio| ratio > 0.0 && ratio <= 1.0).ok_or_else(right)
-}
-
-fn size(text: &str) -> Result<u16, String> {
-    let right = || "wanted a whole number from 4 to 1000".to_string();
-    text.parse().ok().filter(|size| (4..=1000).contains(size)).ok_or_else(right)
 }
 
 impl PoolArgs {

@@ -36,6 +36,7 @@ pub(super) fn list_landmarks(recordings: &[PathBuf], asked: AskedLandmarks) -> R
     let kinds = [
         (asked.errors, ReplayLandmark::Error),
         (asked.signals, ReplayLandmark::Signal),
+        (asked.signals, ReplayLandmark::Marker),
         (asked.beliefs, ReplayLandmark::FalseBelief),
     ];
     let kinds: Vec<ReplayLandmark> =

@@ -43,7 +43,7 @@ pub(super) struct AskedLandmarks {
     /// Only print a line for each error: the command that opens the viewer there, with its end and its reason.
     #[arg(long, conflicts_with_all = ["save", "web", "at"])]
     pub(super) errors: bool,
-    /// The same for each signal; also together with --errors.
+    /// The same for each signal, and for each note; also together with --errors.
     #[arg(long, conflicts_with_all = ["save", "web", "at"])]
     pub(super) signals: bool,
     /// The same for each estimated false belief, with the truth; also together with the others.

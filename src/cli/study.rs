@@ -6,7 +6,6 @@ use clap::{Args, ValueEnum};
 
 use super::data::two_raters;
 use super::failure::Failure;
-use super::list::exists;
 use super::output::{OutputFormat, print, progress, put_aside};
 use tomcom_core::base::text::count;
 use tomcom_session::headless::SimulationShard;
@@ -77,7 +76,6 @@ impl From<StudyError> for Failure {
 
 /// Runs the command `tomcom study`.
 pub(super) fn study(args: &StudyArgs) -> Result<(), Failure> {
-    args.paths.iter().try_for_each(|path| exists(path))?;
     let extent =
         AnalysisScope { concepts: !args.skip.contains(&Skip::Concepts), events: !args.skip.contains(&Skip::Events) };
     let raters = args.raters.as_ref().map(|raters| two_raters(raters, "--raters")).transpose()?;

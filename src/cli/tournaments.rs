@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::choices::{ArmArg, concept};
+use super::choices::{ArmArg, concept, whole};
 use super::failure::{Failure, every_trial_failed, wrong_argument};
 use super::output::{OutputFormat, print, progress, put};
 use crate::run::files::read_session;
@@ -34,7 +34,7 @@ pub(super) struct TournamentArgs {
     #[arg(long, value_delimiter = ',', required = true, value_parser = concept)]
     concepts: Vec<ConceptSpec>,
     /// Number of trials of each concept.
-    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    #[arg(long, default_value_t = 20, value_parser = whole(1_u64..=100_000))]
     trials: u64,
     /// Only this shard of the trials, such as "2/8", the second of eight, for job arrays with a common --out; afterwards
     /// the command without --shard reads all of them.

@@ -6,7 +6,7 @@ use clap::{Args, Subcommand};
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::list::{chosen, exists};
+use super::list::chosen;
 use super::output::{OutputFormat, print, progress};
 use crate::run::film::{self, FilmAlignmentRequest, FilmError, FilmPlace};
 use tomcom_core::base::text::count;
@@ -86,7 +86,6 @@ struct AttachSummary {
 /// Runs the command `tomcom video`.
 pub(super) fn video(args: &VideoArgs) -> Result<(), Failure> {
     let VideoCommand::Attach(args) = &args.command;
-    args.films.iter().try_for_each(|film| exists(film))?;
     let request = match (args.offset, args.at) {
         (Some(offset_s), _) => FilmAlignmentRequest::Offset(offset_s),
         (None, Some(film_s)) => FilmAlignmentRequest::TrialStart(film_s),

@@ -4,14 +4,14 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::choices::own_concept_parser;
+use super::choices::{own_concept_parser, whole};
 use super::failure::Failure;
 use super::lab::tell_carried;
-use super::list::{chosen, each_chosen, exists, gathered_for_analysis};
+use super::list::{chosen, each_chosen, gathered_for_analysis};
 use super::operate::{OperateFlags, new_session};
 use super::output::{OutputFormat, print, progress, put};
 use crate::console::console_model::SPEEDS;
-use crate::run::options::DEFAULT_SESSION;
+use crate::run::options::{DEFAULT_OUT, DEFAULT_SESSION};
 use crate::run::train::{self, WizardTrainingRequest};
 use crate::run::{review_console, series, simulate};
 use tomcom_core::communication::concept::ConceptName;
@@ -37,7 +37,7 @@ pub(super) struct CompareArgs {
     #[arg(value_name = "RECORDING|SESSION")]
     paths: Vec<PathBuf>,
     /// Open the console over a session that is still running, read-only from this terminal.
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["sweep", "open", "wizard", "format"])]
     follow: bool,
     /// Further concepts besides the session's own, separated by commas.
     #[arg(long, value_parser = own_concept_parser(), value_delimiter = ',')]
@@ -46,7 +46,7 @@ pub(super) struct CompareArgs {
     #[arg(long, value_parser = own_concept_parser(), value_delimiter = ',', conflicts_with = "follow")]
     only: Vec<ConceptName>,
     /// Window of a match, in presses of the human: communications further apart do not match.
-    #[arg(long, default_value_t = WINDOW, value_parser = clap::value_parser!(u32).range(0..=100))]
+    #[arg(long, default_value_t = WINDOW, value_parser = whole(0_u32..=100))]
     window: u32,
     /// Print the statistics for every window from 0 to 10.
     #[arg(long, conflicts_with_all = ["open", "window"])]
@@ -109,7 +109,6 @@ pub(super) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     };
     check_flags(args, session.is_some() && !args.follow)?;
     if let Some(session) = session.filter(|_| !args.follow) {
-        session.map_or(Ok(()), exists)?;
         let done = new_session(session, &args.flags, Some(request(args.window)))?;
         return Ok(put(&series::describe(&done))?);
     }
@@ -151,6 +150,12 @@ fn check_flags(args: &CompareArgs, is_session: bool) -> Result<(), Failure> {
         ("--code", flags.code.is_some()),
         ("--participant", flags.participant.is_some()),
         ("--gaze", flags.gaze.is_some()),
+        ("--gaze-file", flags.gaze_file.is_some()),
+        ("--gaze-start", flags.gaze_start.is_some()),
+        ("--listen", flags.listen.is_some()),
+        ("--rerun-listen", flags.rerun_listen.is_some()),
+        ("--observe", flags.observe.is_some()),
+        ("--out", flags.out != Path::new(DEFAULT_OUT)),
         ("--arm", flags.arm.is_some()),
         ("--condition", flags.condition.is_some()),
         ("--concept", flags.concept.is_some()),

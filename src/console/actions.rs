@@ -8,7 +8,7 @@ use super::panels::{self, Panel};
 use super::possible::effects;
 use super::{coding, form, interventions, lists, mouse, preflight, text_input};
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::Sender;
+use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::kitchen::{Agent, AspectId};
 use tomcom_session::admit::{admit, hygiene};
 use tomcom_session::event::SignalEndReason;
@@ -19,18 +19,14 @@ use tomcom_session::{Event, Session, TrialPhase, offers};
 /// Sends the signal of the open offer to the participant.
 fn accept(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     if is_right_after_list(model) {
-        model.say(NoticeLevel::Refused, "signal not sent: enter came right after a list closed; press it again");
-        return None;
+        return refuse(model, "signal not sent: enter came right after a list closed; press it again");
     }
     match offers::enter(session, model.now) {
         Ok((offer, event)) => {
             let words = format!("signal sent: {}", offer.signal().map_or(String::new(), wording::signal));
-            send(model, session, event, NoticeLevel::Done, &words)
+            send(model, session, event, words)
         }
-        Err(reason) => {
-            model.say(NoticeLevel::Refused, format!("signal not sent: {reason}"));
-            None
-        }
+        Err(reason) => refuse(model, format!("signal not sent: {reason}")),
     }
 }
 
@@ -38,54 +34,34 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
     match action {
         KeyAction::Signal(_, signal) => {
             let words = format!("signal sent: {}", wording::signal(&signal));
-            send(
-                model,
-                session,
-                Event::SignalShown { by: Sender::Wizard, signal, offer: None },
-                NoticeLevel::Done,
-                &words,
-            )
+            send(model, session, shown(signal), words)
         }
         KeyAction::Accept => accept(model, session),
         KeyAction::Press(button) => {
             let why = wording::no_effect(&session.kitchen, session.state, button).unwrap_or_default();
             let button = session.kitchen.button(Agent::Human, button).name.clone();
-            send(
-                model,
-                session,
-                Event::Press { agent: Agent::Human, button, at_ns: None, button_box: false },
-                NoticeLevel::Refused,
-                &why,
-            )
+            let event = Event::Press { agent: Agent::Human, button, at_ns: None, button_box: false };
+            send_telling(model, session, event, NoticeLevel::Refused, why)
         }
-        KeyAction::TakeBack => send(
-            model,
-            session,
-            Event::SignalEnded { reason: SignalEndReason::TakenBack },
-            NoticeLevel::Done,
-            "the signal is taken back",
-        ),
+        KeyAction::TakeBack => {
+            let event = Event::SignalEnded { reason: SignalEndReason::TakenBack };
+            send(model, session, event, "the signal is taken back")
+        }
         KeyAction::Note(_) if !preset_notes(session) => {
             let key = model.keys.chord_for(&KeyAction::Manual(ManualAction::NoteInWords));
             let types = key.map_or(String::new(), |key| format!("; {key} types one"));
-            refuse(model, &format!("after a trial of a plan a digit is no note{types}"))
+            refuse(model, format!("after a trial of a plan a digit is no note{types}"))
         }
         KeyAction::Note(index) => {
             let note = session.spec.console.notes.get(index)?.clone();
             let words = format!("note recorded: {note}");
-            send(model, session, Event::Marker { note, observer: None }, NoticeLevel::Done, &words)
+            send(model, session, Event::Marker { note, observer: None }, words)
         }
         KeyAction::Advance => advance(model, session),
         KeyAction::ResumeRobot => resume_robot(model, session),
         KeyAction::EndTrial => match session.phase {
-            TrialPhase::Running | TrialPhase::Paused => {
-                model.dialog = Some(Dialog::EndTrial);
-                None
-            }
-            _ => {
-                model.say(NoticeLevel::Refused, "no trial runs that could be ended");
-                None
-            }
+            TrialPhase::Running | TrialPhase::Paused => open_dialog(model, Dialog::EndTrial),
+            _ => refuse(model, "no trial runs that could be ended"),
         },
         KeyAction::Manual(action) => interventions::act(model, session, action),
         KeyAction::SwitchLayer => {
@@ -105,8 +81,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
             None
         }
         KeyAction::Belief if visibility(session, model) < WizardVisibility::Belief => {
-            model.say(NoticeLevel::Refused, "beliefs are not shown in this session");
-            None
+            refuse(model, "beliefs are not shown in this session")
         }
         KeyAction::Belief => {
             let mut ranked = beliefs(session, model);
@@ -127,8 +102,8 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
         }
         KeyAction::Rate(rate) => coding::act(model, session, rate),
         KeyAction::Help => {
-            (model.dialog, model.help_from) = (Some(Dialog::Help(effects(session, model))), 0);
-            None
+            model.help_from = 0;
+            open_dialog(model, Dialog::Help(effects(session, model)))
         }
         KeyAction::Palette => {
             lists::open(model, session, "");
@@ -138,10 +113,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
         // a wizard training asks first.
         KeyAction::Quit if model.playback.is_some() && model.lesson.is_none() => Some(ConsoleCommand::Quit),
         KeyAction::Quit if session.phase == TrialPhase::Closed => Some(ConsoleCommand::Quit),
-        KeyAction::Quit => {
-            model.dialog = Some(Dialog::Quit);
-            None
-        }
+        KeyAction::Quit => open_dialog(model, Dialog::Quit),
         KeyAction::StopRobot | KeyAction::Move(_) => None,
     }
 }
@@ -165,12 +137,9 @@ fn advance(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand
         TrialPhase::Running => (Event::TrialPaused, "the trial is paused"),
         TrialPhase::Paused => (Event::TrialResumed, "the trial runs"),
         TrialPhase::Over(_) => return form::leave(model, session),
-        TrialPhase::Closed => {
-            model.say(NoticeLevel::Refused, "the session is over");
-            return None;
-        }
+        TrialPhase::Closed => return refuse(model, "the session is over"),
     };
-    send(model, session, event, NoticeLevel::Done, words)
+    send(model, session, event, words)
 }
 
 /// Whether digits record preset notes now. After a trial of a plan they do not: there a digit that was meant for the
@@ -179,32 +148,54 @@ pub(super) fn preset_notes(session: &Session) -> bool {
     session.protocol.is_none() || !matches!(session.phase, TrialPhase::Over(_))
 }
 
+/// The event of a signal that the wizard sends without an offer.
+pub(super) fn shown(signal: Signal) -> Event {
+    Event::SignalShown { by: Sender::Wizard, signal, offer: None }
+}
+
 /// Why the session would reject an event now; `None` if it would accept it.
 pub(super) fn refusal(session: &Session, now: SessionTime, event: &Event) -> Option<String> {
     admit(session, event).map_err(str::to_string).and_then(|()| hygiene(session, now, event)).err()
 }
 
-/// Sends an event if the session accepts it now; else a notice tells the wizard why not.
+/// Sends an event if the session accepts it now, and says in these words what is done; else a notice tells the wizard why
+/// not.
 pub(super) fn send(
     model: &mut ConsoleModel,
     session: &Session,
     event: Event,
+    words: impl Into<String>,
+) -> Option<ConsoleCommand> {
+    send_telling(model, session, event, NoticeLevel::Done, words)
+}
+
+/// Sends an event as [`send`] does, with a notice of this level.
+pub(super) fn send_telling(
+    model: &mut ConsoleModel,
+    session: &Session,
+    event: Event,
     level: NoticeLevel,
-    words: &str,
+    words: impl Into<String>,
 ) -> Option<ConsoleCommand> {
     if let Some(reason) = refusal(session, model.now, &event) {
-        return refuse(model, &reason);
+        return refuse(model, reason);
     }
-    match words {
-        "" => model.notice = None,
-        words => model.say(level, words),
+    let words = words.into();
+    match words.is_empty() {
+        true => model.notice = None,
+        false => model.say(level, words),
     }
     Some(ConsoleCommand::Input(event))
 }
 
 /// Tells the wizard why a key has no effect now.
-pub(super) fn refuse(model: &mut ConsoleModel, reason: &str) -> Option<ConsoleCommand> {
+pub(super) fn refuse(model: &mut ConsoleModel, reason: impl Into<String>) -> Option<ConsoleCommand> {
     model.say(NoticeLevel::Refused, reason);
+    None
+}
+
+pub(super) fn open_dialog(model: &mut ConsoleModel, dialog: Dialog) -> Option<ConsoleCommand> {
+    model.dialog = Some(dialog);
     None
 }
 
@@ -212,7 +203,7 @@ pub(super) fn refuse(model: &mut ConsoleModel, reason: &str) -> Option<ConsoleCo
 pub(super) fn resume_robot(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     let words =
         if session.robot.held { "the robot is no longer stopped, but still held" } else { "the robot continues" };
-    send(model, session, Event::RobotResumed, NoticeLevel::Done, words)
+    send(model, session, Event::RobotResumed, words)
 }
 
 /// Handles a message to the console at the time `model.now`.

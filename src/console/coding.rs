@@ -2,15 +2,15 @@
 
 use ratatui::layout::Rect;
 
+use super::actions::refuse;
 use super::chord::KeyChord;
-use super::console_model::{ConsoleCommand, ConsoleModel, NoticeLevel, ReplayAction};
+use super::console_model::{ConsoleCommand, ConsoleModel, ReplayAction};
 use super::key_action::{KeyAction, KeyBinding, RaterAction};
 use super::keys::KeyBindings;
 use super::text_columns::{width, wrap};
 use super::view::regions::{PanelAreas, ScreenSize, inside};
 use tomcom_core::kitchen::Kitchen;
-use tomcom_core::measures::raters::RaterConsensus;
-use tomcom_core::measures::raters::{ErrorCauseCode, ErrorCauseKind, RaterCodes};
+use tomcom_core::measures::raters::{ErrorCauseCode, ErrorCauseKind, RaterCodes, RaterConsensus};
 use tomcom_session::Session;
 use tomcom_session::error_list::ListedError;
 use tomcom_session::history::wording;
@@ -42,12 +42,10 @@ pub fn act(model: &mut ConsoleModel, session: &Session, rate: RaterAction) -> Op
         let words =
             format!("no code given: error {} is only selected; enter goes to it, esc deselects it", error.error);
         coding.chosen = chosen;
-        model.say(NoticeLevel::Refused, words);
-        return None;
+        return refuse(model, words);
     }
     let Some(press) = coding.present(events).map(|error| error.press) else {
-        model.say(NoticeLevel::Refused, "there is no error before this point of the recording");
-        return None;
+        return refuse(model, "there is no error before this point of the recording");
     };
     let was = coding.codes.0.get(&press).cloned();
     coding.give(press, code);
@@ -58,8 +56,7 @@ pub fn act(model: &mut ConsoleModel, session: &Session, rate: RaterAction) -> Op
 fn go(model: &mut ConsoleModel, to: Option<usize>) -> Option<ConsoleCommand> {
     let errors = model.coding.as_ref().map(|coding| &coding.errors)?;
     let Some(error) = to.and_then(|to| errors.get(to)) else {
-        model.say(NoticeLevel::Refused, "the recording has no other error");
-        return None;
+        return refuse(model, "the recording has no other error");
     };
     Some(ConsoleCommand::Move(ReplayAction::ToEvent(error.press)))
 }
@@ -67,14 +64,14 @@ fn go(model: &mut ConsoleModel, to: Option<usize>) -> Option<ConsoleCommand> {
 /// Undoes the rater's last change of a code, or redoes it.
 fn undone(model: &mut ConsoleModel, again: bool) -> Option<ConsoleCommand> {
     let coding = model.coding.as_mut()?;
-    let changed = if again { coding.redo() } else { coding.undo() };
+    let changed = coding.undo(again);
     if changed.is_none() {
         let nothing = if again {
             "no undone change of a code that could be redone"
         } else {
             "no code was changed since the recording was opened"
         };
-        model.say(NoticeLevel::Refused, nothing);
+        return refuse(model, nothing);
     }
     changed.map(|(press, was)| ConsoleCommand::Code { press, was })
 }
@@ -98,7 +95,7 @@ pub enum CodingRaters {
     },
 }
 
-/// A change of an error's code, which can be undone.
+/// A change of an error's code, which can be undone; of an undone one, the change back.
 #[derive(Clone, Debug, PartialEq)]
 struct CodeChange {
     press: u64,
@@ -176,13 +173,14 @@ impl RaterSession {
         }
     }
 
-    /// Undoes the last change of a code; returns the sequence number of the press whose code changed, and what it was.
-    pub fn undo(&mut self) -> Option<(u64, Option<ErrorCauseCode>)> {
-        let change = self.done.pop()?;
-        self.set(change.press, change.before.clone());
-        let changed = (change.press, change.after.clone());
-        self.undone.push(change);
-        Some(changed)
+    /// Undoes the last change of a code, or redoes the one that was undone last (`again`); returns the sequence number of
+    /// the press whose code changed, and what it was.
+    pub fn undo(&mut self, again: bool) -> Option<(u64, Option<ErrorCauseCode>)> {
+        let (from, to) = if again { (&mut self.undone, &mut self.done) } else { (&mut self.done, &mut self.undone) };
+        let CodeChange { press, before, after } = from.pop()?;
+        to.push(CodeChange { press, before: after.clone(), after: before.clone() });
+        self.set(press, before);
+        Some((press, after))
     }
 
     pub fn can_undo(&self) -> bool {
@@ -191,15 +189,6 @@ impl RaterSession {
 
     pub fn can_redo(&self) -> bool {
         !self.undone.is_empty()
-    }
-
-    /// Redoes the change that was undone last; returns the sequence number of the press whose code changed, and what it was.
-    pub fn redo(&mut self) -> Option<(u64, Option<ErrorCauseCode>)> {
-        let change = self.undone.pop()?;
-        self.set(change.press, change.after.clone());
-        let changed = (change.press, change.before.clone());
-        self.done.push(change);
-        Some(changed)
     }
 
     fn set(&mut self, press: u64, code: Option<ErrorCauseCode>) {

@@ -78,8 +78,9 @@ pub struct Notice {
 }
 
 /// State of the session's recording.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum RecordingStatus {
+    #[default]
     Off,
     On(String),
     Lost,
@@ -125,7 +126,7 @@ pub(super) struct PressedKey {
 }
 
 /// State of the console: everything that concerns only the screen and the keyboard, not the trial.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct ConsoleModel {
     pub now: SessionTime,
     /// Clock for keys and notices, which also runs while a replay is paused.
@@ -219,62 +220,7 @@ pub struct ConsoleModel {
 impl ConsoleModel {
     /// State of a console before its first frame.
     pub fn new(keys: KeyBindings, theme: Theme, size: (u16, u16)) -> ConsoleModel {
-        ConsoleModel {
-            now: SessionTime::ZERO,
-            clock: SessionTime::ZERO,
-            size,
-            theme,
-            keys,
-            layer: KeyLayer::Wizard,
-            dialog: None,
-            notice: None,
-            recording: RecordingStatus::Off,
-            viewers: None,
-            lsl: None,
-            films: None,
-            arm: Vec::new(),
-            free_bytes: None,
-            alone: None,
-            focus: None,
-            help_from: 0,
-            events_back: 0,
-            beliefs_from: 0,
-            timeline_back_s: 0,
-            focused: true,
-            pointer: None,
-            trail: VecDeque::with_capacity(TRAIL),
-            rejected_senders: 0,
-            rejected_gaze: None,
-            rejections_told: Vec::new(),
-            gaze_closed: None,
-            gaze_pairing: None,
-            recorded_gaze: None,
-            display: None,
-            observers: None,
-            participants_done: None,
-            is_last_recording: false,
-            rings: false,
-            errors: Vec::new(),
-            unproven: 0,
-            wizard: WizardMeasures::default(),
-            belief: BeliefHistory::default(),
-            belief_focus: None,
-            comparison: None,
-            lesson: None,
-            coding: None,
-            playback: None,
-            probe_entry: ProbeEntry::default(),
-            item_choice: None,
-            waiver: None,
-            gaze_choice: None,
-            palette_chosen: None,
-            palette_first: None,
-            palette_idle: Vec::new(),
-            answered: None,
-            clicked: None,
-            exact_keys: false,
-            pressed: None,
-        }
+        ConsoleModel { size, theme, keys, focused: true, ..ConsoleModel::default() }
     }
 
     pub fn say(&mut self, level: NoticeLevel, text: impl Into<String>) {
@@ -494,16 +440,14 @@ pub enum ReplayAction {
 }
 
 /// State of a replay: its position, its speed, and the recording's state.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Playback {
     pub name: String,
     pub playing: bool,
     /// Playback speed, as an index into [`SPEEDS`].
     pub speed: usize,
-    /// Errors, signals and false beliefs of the recording, as far as it was read.
+    /// Errors, signals and false beliefs of the recording, as far as it was read, by the trial's clock.
     pub marks: Arc<[(SessionTime, ReplayLandmark)]>,
-    /// Session time of the last known event of the recording.
-    pub length: SessionTime,
     pub trial_length: SessionTime,
     /// Number of events of the recording up to the replay's position.
     pub event: usize,
@@ -524,22 +468,7 @@ pub struct Playback {
 impl Playback {
     /// A replay at the beginning of a recording.
     pub fn new(name: String) -> Playback {
-        Playback {
-            name,
-            playing: false,
-            speed: 2,
-            marks: Arc::default(),
-            length: SessionTime::ZERO,
-            trial_length: SessionTime::ZERO,
-            event: 0,
-            events: 0,
-            landmark: None,
-            outside_film: None,
-            follows: false,
-            cut: false,
-            running: false,
-            excluded: false,
-        }
+        Playback { name, speed: 2, ..Playback::default() }
     }
 
     /// The landmark or event at which the replay stands, if a key went there.

@@ -4,8 +4,8 @@
 
 use crossterm::event::KeyCode;
 
-use super::actions::{refuse, send};
-use super::console_model::{ConsoleCommand, ConsoleModel, Dialog, NoticeLevel};
+use super::actions::{open_dialog, refuse, send};
+use super::console_model::{ConsoleCommand, ConsoleModel, Dialog};
 use super::lists::{OTHER_REASON, ReasonFor};
 use super::probe_keys;
 use super::text_input::TextInput;
@@ -138,8 +138,7 @@ pub(super) fn write(model: &mut ConsoleModel, session: &Session, stroke: SheetKe
 
 /// Opens the field for further words to the reason for which the practice criterion is waived.
 fn word_waiver(model: &mut ConsoleModel, reason: &str, field: TextInput) -> Option<ConsoleCommand> {
-    model.dialog = Some(Dialog::Reason(ReasonFor::Waive, reason.to_string(), field));
-    None
+    open_dialog(model, Dialog::Reason(ReasonFor::Waive, reason.to_string(), field))
 }
 
 /// Carries out a sheet key during the tutorial: the wizard turns the participant's page, or ends the tutorial.
@@ -152,10 +151,7 @@ fn read(model: &mut ConsoleModel, session: &Session, tutorial: &Tutorial, stroke
             Some(before) => before,
             None => return refuse(model, "this is the first page of the tutorial"),
         },
-        SheetKey::Digit(0) => {
-            model.dialog = Some(Dialog::EndTutorial);
-            return None;
-        }
+        SheetKey::Digit(0) => return open_dialog(model, Dialog::EndTutorial),
         SheetKey::Digit(_) | SheetKey::Letter(_) | SheetKey::Skip => {
             return refuse(model, "arrows turn the participant's page, 0 asks whether to end the tutorial");
         }
@@ -266,8 +262,7 @@ fn is_typed(form: &AnswerFormat) -> bool {
 fn begin_typing(model: &mut ConsoleModel, protocol: &StudyProtocolState, letter: char) -> Option<ConsoleCommand> {
     let mut line = answer_input(protocol);
     line.key(KeyCode::Char(letter));
-    model.dialog = Some(Dialog::Answer(line));
-    None
+    open_dialog(model, Dialog::Answer(line))
 }
 
 /// The text input for the answer to the shown item. A text that was answered before is kept in it to be corrected.
@@ -296,48 +291,27 @@ pub fn debriefing_question(session: &Session) -> Option<&str> {
     steps.get(open).map(String::as_str)
 }
 
-/// Handles a key in the text input of an answer. An invalid answer stays in the input, and a notice gives the reason.
-pub(super) fn type_answer(
-    model: &mut ConsoleModel,
-    session: &Session,
-    mut line: TextInput,
-    code: KeyCode,
-) -> Option<ConsoleCommand> {
-    model.dialog = None;
+/// Gives the answer of a text input. An invalid answer stays in the input, and a notice gives the reason.
+pub(super) fn give_answer(model: &mut ConsoleModel, session: &Session, line: TextInput) -> Option<ConsoleCommand> {
+    let text = line.text();
     if let Some(question) = debriefing_question(session) {
-        return match code {
-            KeyCode::Esc => None,
-            KeyCode::Enter => {
-                let (note, said) = (format!("{question} {}", line.text()), "recorded as a note; enter ticks the step");
-                send(model, session, Event::Marker { note, observer: None }, NoticeLevel::Done, said)
-            }
-            _ => {
-                line.key(code);
-                model.dialog = Some(Dialog::Answer(line));
-                None
-            }
-        };
+        let note = Event::Marker { note: format!("{question} {text}"), observer: None };
+        return send(model, session, note, "recorded as a note; enter ticks the step");
     }
     let (questionnaire, protocol) = (session.questionnaire()?, session.protocol.as_ref()?);
     let (item, form) = (questionnaire.items.get(protocol.item)?.id.clone(), questionnaire.form(protocol.item)?);
-    match code {
-        KeyCode::Esc => return None,
-        KeyCode::Enter => {
-            let text = line.text();
-            let answer = match (&form, text.parse()) {
-                (AnswerFormat::Text { .. }, _) => Ok(AnswerValue::Text(text)),
-                (_, Ok(number)) => Ok(AnswerValue::Number(number)),
-                (_, Err(_)) => Err("the answer has to be a whole number"),
-            };
-            match answer.and_then(|answer| form.admit(&answer).map(|()| answer)) {
-                Ok(answer) => return send_protocol(model, session, ProtocolEvent::ItemAnswered { item, answer }),
-                Err(reason) => model.say(NoticeLevel::Refused, reason),
-            }
+    let answer = match (&form, text.parse()) {
+        (AnswerFormat::Text { .. }, _) => Ok(AnswerValue::Text(text)),
+        (_, Ok(number)) => Ok(AnswerValue::Number(number)),
+        (_, Err(_)) => Err("the answer has to be a whole number"),
+    };
+    match answer.and_then(|answer| form.admit(&answer).map(|()| answer)) {
+        Ok(answer) => send_protocol(model, session, ProtocolEvent::ItemAnswered { item, answer }),
+        Err(reason) => {
+            model.dialog = Some(Dialog::Answer(line));
+            refuse(model, reason)
         }
-        _ => line.key(code),
     }
-    model.dialog = Some(Dialog::Answer(line));
-    None
 }
 
 /// Leaves a finished phase for the next phase or for the next recording.
@@ -358,7 +332,7 @@ pub(super) fn leave(model: &mut ConsoleModel, session: &Session) -> Option<Conso
 }
 
 fn send_protocol(model: &mut ConsoleModel, session: &Session, event: ProtocolEvent) -> Option<ConsoleCommand> {
-    send(model, session, Event::Protocol(event), NoticeLevel::Done, "")
+    send(model, session, Event::Protocol(event), "")
 }
 
 /// Meaning of a key on a sheet (a form at full size).

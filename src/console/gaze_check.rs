@@ -4,7 +4,7 @@
 use crossterm::event::KeyCode;
 
 use super::actions::send;
-use super::console_model::{ConsoleCommand, ConsoleModel, Dialog, NoticeLevel};
+use super::console_model::{ConsoleCommand, ConsoleModel, Dialog};
 use tomcom_core::gaze::calibration::{GazeAccuracy, USABLE_DEG};
 use tomcom_session::gaze_check::GazeCheckEvent;
 use tomcom_session::{Event, Session};
@@ -20,8 +20,7 @@ pub const REPEAT: char = 'r';
 pub(super) fn begin(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     model.gaze_choice = None;
     let event = Event::Calibration(GazeCheckEvent::begin());
-    let begun =
-        send(model, session, event, NoticeLevel::Done, "the participant looks at the targets; esc ends the check");
+    let begun = send(model, session, event, "the participant looks at the targets; esc ends the check");
     if begun.is_some() {
         model.dialog = Some(Dialog::Calibration);
     }
@@ -79,7 +78,7 @@ pub(super) fn answer(
 
 fn decide(model: &mut ConsoleModel, session: &Session, event: GazeCheckEvent, words: &str) -> Option<ConsoleCommand> {
     model.dialog = None;
-    send(model, session, Event::Calibration(event), NoticeLevel::Done, words)
+    send(model, session, Event::Calibration(event), words)
 }
 
 /// Action that the console proposes after a gaze accuracy check, which enter carries out.

@@ -3,7 +3,7 @@
 
 use crossterm::event::KeyCode;
 
-use super::actions::{refuse, send};
+use super::actions::{open_dialog, refuse, send};
 use super::console_model::{ConsoleCommand, ConsoleModel, Dialog, NoticeLevel};
 use super::key_action::ManualAction;
 use super::lists::{OTHER_REASON, Picker, PickerAnswer, PickerKind, PickerOutcome, ReasonFor};
@@ -27,14 +27,10 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: ManualAct
                 true => "the robot is no longer held, but still stopped",
                 false => "the robot is released and continues",
             };
-            send(model, session, Event::RobotReleased { by }, NoticeLevel::Done, words)
+            send(model, session, Event::RobotReleased { by }, words)
         }
-        ManualAction::HoldRobot => {
-            send(model, session, Event::RobotHeld { by }, NoticeLevel::Done, "the robot is held")
-        }
-        ManualAction::SkipPress => {
-            send(model, session, Event::RobotSkipped { by }, NoticeLevel::Done, "the robot's press is skipped")
-        }
+        ManualAction::HoldRobot => send(model, session, Event::RobotHeld { by }, "the robot is held"),
+        ManualAction::SkipPress => send(model, session, Event::RobotSkipped { by }, "the robot's press is skipped"),
         ManualAction::DriveRobot if !session.is_running() => {
             refuse(model, "the robot's press can be chosen only while the trial runs")
         }
@@ -43,7 +39,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: ManualAct
         ManualAction::ConfirmArm => match session.robot.arm.stage {
             Some((stage, _)) => {
                 let words = format!("confirmed: {}", stage.asks().unwrap_or("nothing"));
-                send(model, session, Event::RobotConfirmed { stage }, NoticeLevel::Done, &words)
+                send(model, session, Event::RobotConfirmed { stage }, words)
             }
             None => refuse(model, "the arm's controller has not answered yet"),
         },
@@ -52,31 +48,24 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: ManualAct
         }
         // The trial stands while the wizard chooses a reason and adds words: the space bar types a space in them.
         ManualAction::Abort if session.is_running() => {
-            model.dialog = Some(Dialog::Pick(Picker::new(PickerKind::Reason(ReasonFor::Abort))));
-            send(model, session, Event::TrialPaused, NoticeLevel::Done, "the trial is paused; esc keeps it")
+            ask(model, PickerKind::Reason(ReasonFor::Abort));
+            send(model, session, Event::TrialPaused, "the trial is paused; esc keeps it")
         }
         ManualAction::Abort => ask(model, PickerKind::Reason(ReasonFor::Abort)),
         ManualAction::Preflight if session.phase != TrialPhase::Ready => {
             refuse(model, "preflight checks are shown only before the trial starts")
         }
-        ManualAction::Preflight => {
-            model.dialog = Some(Dialog::Preflight);
-            None
-        }
+        ManualAction::Preflight => open_dialog(model, Dialog::Preflight),
         ManualAction::NoteInWords if session.is_running() => {
-            let note = String::new();
-            let words = "time marked: its words are typed when the trial stands";
-            send(model, session, Event::Marker { note, observer: None }, NoticeLevel::Done, words)
+            let mark = Event::Marker { note: String::new(), observer: None };
+            send(model, session, mark, "time marked: its words are typed when the trial stands")
         }
         ManualAction::NoteInWords if session.phase == TrialPhase::Closed => refuse(model, "the session is over"),
-        ManualAction::NoteInWords => {
-            model.dialog = Some(Dialog::Note(TextInput::default()));
-            None
-        }
+        ManualAction::NoteInWords => open_dialog(model, Dialog::Note(TextInput::default())),
         ManualAction::Calibrate => super::gaze_check::begin(model, session),
         ManualAction::Redo => redo(model, session),
         ManualAction::Exclude if session.excluded.is_some() => {
-            send(model, session, Event::TrialIncluded, NoticeLevel::Done, "the trial is no longer excluded")
+            send(model, session, Event::TrialIncluded, "the trial is no longer excluded")
         }
         ManualAction::Exclude if matches!(session.phase, TrialPhase::Ready | TrialPhase::Closed) => {
             refuse(model, "no trial has begun that could be excluded")
@@ -84,8 +73,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: ManualAct
         ManualAction::Exclude if session.aborted.is_some() => refuse(model, "an aborted trial is left out already"),
         ManualAction::Exclude => ask(model, PickerKind::Reason(ReasonFor::Exclude)),
         ManualAction::AskProbe => {
-            let words = "a freeze probe is requested";
-            send(model, session, Event::Probe(ProbeEvent::Requested), NoticeLevel::Done, words)
+            send(model, session, Event::Probe(ProbeEvent::Requested), "a freeze probe is requested")
         }
         ManualAction::SkipProbe => match skippable(session) {
             Some(probe) => ask(model, PickerKind::Reason(ReasonFor::SkipProbe(probe))),
@@ -127,69 +115,38 @@ fn redo(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     }
 }
 
-fn ask(model: &mut ConsoleModel, kind: PickerKind) -> Option<ConsoleCommand> {
-    model.dialog = Some(Dialog::Pick(Picker::new(kind)));
-    None
+pub(super) fn ask(model: &mut ConsoleModel, kind: PickerKind) -> Option<ConsoleCommand> {
+    open_dialog(model, Dialog::Pick(Picker::new(kind)))
 }
 
-/// Handles a key in the text input of a note: the words of the oldest time mark that has none, or else of a new note.
-pub(super) fn write(
-    model: &mut ConsoleModel,
-    session: &Session,
-    mut line: TextInput,
-    code: KeyCode,
-) -> Option<ConsoleCommand> {
-    model.dialog = None;
-    match code {
-        KeyCode::Esc => None,
-        KeyCode::Enter => match session.open_marks.as_slice() {
-            [] if line.text().is_empty() => None,
-            [] => send(
-                model,
-                session,
-                Event::Marker { note: line.text(), observer: None },
-                NoticeLevel::Done,
-                "the note is saved",
-            ),
-            [(marker, _), others @ ..] => {
-                let event = Event::MarkerWorded { marker: *marker, note: line.text() };
-                model.dialog = (!others.is_empty()).then(|| Dialog::Note(TextInput::default()));
-                send(model, session, event, NoticeLevel::Done, "the words of the time mark are saved")
-            }
-        },
-        _ => {
-            line.key(code);
-            model.dialog = Some(Dialog::Note(line));
-            None
+/// Saves a typed note: as the words of the oldest time mark that has none, or else as a new note.
+pub(super) fn save_note(model: &mut ConsoleModel, session: &Session, note: String) -> Option<ConsoleCommand> {
+    match session.open_marks.as_slice() {
+        [] if note.is_empty() => None,
+        [] => send(model, session, Event::Marker { note, observer: None }, "the note is saved"),
+        [(marker, _), others @ ..] => {
+            let event = Event::MarkerWorded { marker: *marker, note };
+            model.dialog = (!others.is_empty()).then(|| Dialog::Note(TextInput::default()));
+            send(model, session, event, "the words of the time mark are saved")
         }
     }
 }
 
-/// Handles a key in the text input beside a chosen reason. Another reason than the preset ones needs words.
+/// Gives a chosen reason with the words that were typed beside it. Another reason than the preset ones needs words.
 pub(super) fn word_reason(
     model: &mut ConsoleModel,
     session: &Session,
-    (what, reason, mut line): (ReasonFor, String, TextInput),
-    code: KeyCode,
+    what: ReasonFor,
+    reason: String,
+    line: TextInput,
 ) -> Option<ConsoleCommand> {
-    model.dialog = None;
-    match code {
-        // The reasons for waiving the criterion stand on the sheet below.
-        KeyCode::Esc if what == ReasonFor::Waive => None,
-        KeyCode::Esc => ask(model, PickerKind::Reason(what)),
-        KeyCode::Enter if line.text().is_empty() && reason == OTHER_REASON => {
+    match line.text() {
+        words if words.is_empty() && reason == OTHER_REASON => {
             model.dialog = Some(Dialog::Reason(what, reason, line));
             refuse(model, "another reason needs words: type them, or esc goes back")
         }
-        KeyCode::Enter => {
-            let words = line.text();
-            give_reason(model, session, what, if words.is_empty() { reason } else { format!("{reason}: {words}") })
-        }
-        _ => {
-            line.key(code);
-            model.dialog = Some(Dialog::Reason(what, reason, line));
-            None
-        }
+        words if words.is_empty() => give_reason(model, session, what, reason),
+        words => give_reason(model, session, what, format!("{reason}: {words}")),
     }
 }
 
@@ -207,7 +164,7 @@ fn give_reason(model: &mut ConsoleModel, session: &Session, what: ReasonFor, rea
         }
         ReasonFor::Waive => (Event::Protocol(ProtocolEvent::CriterionWaived { reason }), String::new()),
     };
-    send(model, session, event, NoticeLevel::Done, &words)
+    send(model, session, event, words)
 }
 
 pub(super) fn pick(
@@ -217,10 +174,7 @@ pub(super) fn pick(
     code: KeyCode,
 ) -> Option<ConsoleCommand> {
     let answer = match picker.key(session, code) {
-        PickerOutcome::Nothing => {
-            model.dialog = Some(Dialog::Pick(picker));
-            return None;
-        }
+        PickerOutcome::Nothing => return open_dialog(model, Dialog::Pick(picker)),
         PickerOutcome::Left => {
             // Esc in the list of contents goes back to the list of places.
             let back = matches!(picker.kind, PickerKind::Content(_)).then(|| Picker::new(PickerKind::Place));
@@ -230,8 +184,7 @@ pub(super) fn pick(
         PickerOutcome::Words(words) => {
             let PickerKind::Reason(what) = picker.kind else { return None };
             let field = TextInput::with_text(&words);
-            model.dialog = Some(Dialog::Reason(what, OTHER_REASON.to_string(), field));
-            return None;
+            return open_dialog(model, Dialog::Reason(what, OTHER_REASON.to_string(), field));
         }
         PickerOutcome::This(answer) => answer,
     };
@@ -245,16 +198,15 @@ pub(super) fn pick(
             let (location, content) = (kitchen.location(place), kitchen.content(content).name.clone());
             let words = format!("kitchen corrected: {} holds {}", location.label(), kitchen.worded(&content));
             let event = Event::KitchenCorrected { location: location.name.clone(), content };
-            send(model, session, event, NoticeLevel::Done, &words)
+            send(model, session, event, words)
         }
         (_, PickerAnswer::Button(button)) => {
             let words = format!("the robot's next press: {}", wording::button(kitchen, Agent::Robot, button));
             let button = kitchen.button(Agent::Robot, button).name.clone();
-            send(model, session, Event::RobotDriven { by: Sender::Wizard, button }, NoticeLevel::Done, &words)
+            send(model, session, Event::RobotDriven { by: Sender::Wizard, button }, words)
         }
         (PickerKind::Reason(what), PickerAnswer::Reason(reason)) if takes_words => {
-            model.dialog = Some(Dialog::Reason(what, reason, TextInput::default()));
-            None
+            open_dialog(model, Dialog::Reason(what, reason, TextInput::default()))
         }
         (PickerKind::Reason(what), PickerAnswer::Reason(reason)) => give_reason(model, session, what, reason),
         (_, PickerAnswer::Reason(_) | PickerAnswer::Content(_)) => None,

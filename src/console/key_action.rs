@@ -10,8 +10,9 @@ use tomcom_core::kitchen::{ButtonId, LocationId};
 use tomcom_core::measures::raters::ErrorCauseKind;
 
 /// Whose keys are active: the wizard's, or the buttons of a person who plays the participant at this keyboard.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum KeyLayer {
+    #[default]
     Wizard,
     Participant,
 }

@@ -3,12 +3,12 @@
 
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind};
 
-use super::actions::{act, differ, send};
+use super::actions::{act, differ, refuse, send_telling};
 use super::chord::KeyChord;
 use super::console_model::{ComparisonAction, ConsoleCommand, ConsoleModel, Dialog, NoticeLevel, PressedKey};
 use super::form::{self, SheetKey, sheet};
 use super::key_action::{KeyAction, KeyLayer, ManualAction, RaterAction, ViewAction};
-use super::lists::{self, ListCursor, ListReply};
+use super::lists::{self, ListCursor, ListReply, PickerKind, ReasonFor};
 use super::possible::acts_on_sheet;
 use super::view::dialog::report_rest;
 use super::view::help::help_pages;
@@ -38,12 +38,17 @@ pub(super) fn press(
     touch: KeyPressKind,
 ) -> Option<ConsoleCommand> {
     let action = model.keys.find(model.layer, chord).map(|line| line.action.clone());
-    if matches!(model.dialog, Some(Dialog::Send(_))) && action != Some(KeyAction::StopRobot) {
-        if matches!(chord.code, KeyCode::Enter | KeyCode::Esc) {
-            return mouse::answer(model, session, chord.code, touch == KeyPressKind::Press);
+    if let Some(Dialog::Send(confirmation)) = model.dialog.clone().filter(|_| action != Some(KeyAction::StopRobot)) {
+        match chord.code {
+            KeyCode::Enter if touch == KeyPressKind::Press => return mouse::confirm(model, session, confirmation),
+            KeyCode::Enter => return None,
+            KeyCode::Esc => {
+                model.dialog = None;
+                return None;
+            }
+            // Every other key closes the question and keeps its own meaning.
+            _ => model.dialog = None,
         }
-        // Every key other than enter and esc closes the question and keeps its own meaning.
-        model.dialog = None;
     }
     match action {
         // A trial goes on by itself after a freeze probe, even while a note is typed.
@@ -81,8 +86,7 @@ pub(super) fn press(
             on_sheet(model, session, code, action, touch)
         }
         Some(action) if touch == KeyPressKind::Again && model.dialog.is_none() && !may_follow_at_once(&action) => {
-            ask_again(model, chord);
-            None
+            ask_again(model, chord)
         }
         action if model.dialog.is_some() => answer(model, session, chord, action, touch),
         Some(action) => act(model, session, action),
@@ -103,12 +107,21 @@ fn in_text(
     if chord.ctrl || (code == KeyCode::Enter && touch != KeyPressKind::Press) {
         return None;
     }
-    match model.dialog.clone() {
-        Some(Dialog::Note(line)) => interventions::write(model, session, line, code),
-        Some(Dialog::Reason(what, reason, line)) => {
-            interventions::word_reason(model, session, (what, reason, line), code)
+    if let Some(Dialog::Note(line) | Dialog::Reason(_, _, line) | Dialog::Answer(line)) = &mut model.dialog
+        && !matches!(code, KeyCode::Enter | KeyCode::Esc)
+    {
+        line.key(code);
+        return None;
+    }
+    match (model.dialog.take(), code) {
+        // The reasons for waiving the criterion stand on the sheet below.
+        (Some(Dialog::Reason(what, ..)), KeyCode::Esc) if what != ReasonFor::Waive => {
+            interventions::ask(model, PickerKind::Reason(what))
         }
-        Some(Dialog::Answer(line)) => form::type_answer(model, session, line, code),
+        (_, KeyCode::Esc) => None,
+        (Some(Dialog::Note(line)), _) => interventions::save_note(model, session, line.text()),
+        (Some(Dialog::Reason(what, reason, line)), _) => interventions::word_reason(model, session, what, reason, line),
+        (Some(Dialog::Answer(line)), _) => form::give_answer(model, session, line),
         _ => None,
     }
 }
@@ -195,15 +208,11 @@ fn on_sheet(
         // Answers are always taken: a lost answer would shift the following answers to wrong items unnoticed, but an
         // additional one is seen.
         (Some(SheetKey::Confirm | SheetKey::Leave), _) if touch == KeyPressKind::Again => {
-            model.say(NoticeLevel::Refused, "key pressed too soon: read the text, then press the key again");
-            None
+            refuse(model, "key pressed too soon: read the text, then press the key again")
         }
         (Some(stroke), _) => form::write(model, session, stroke),
         (None, Some(action)) if acts_on_sheet(session, &action) => act(model, session, action),
-        (None, _) => {
-            model.say(NoticeLevel::Refused, "this key has no effect here: the last line of the sheet names the keys");
-            None
-        }
+        (None, _) => refuse(model, "this key has no effect here: the last line of the sheet names the keys"),
     }
 }
 
@@ -227,8 +236,8 @@ fn reopens(model: &ConsoleModel, action: Option<&KeyAction>) -> bool {
 }
 
 /// Says that a key did not count, since it cannot be told from one that is held down.
-fn ask_again(model: &mut ConsoleModel, chord: KeyChord) {
-    model.say(NoticeLevel::Refused, format!("the key \"{chord}\" may still be held down: press it again"));
+fn ask_again(model: &mut ConsoleModel, chord: KeyChord) -> Option<ConsoleCommand> {
+    refuse(model, format!("the key \"{chord}\" may still be held down: press it again"))
 }
 
 /// Stops the robot (space bar), in every view; has no effect if the wizard has stopped the robot already.
@@ -236,7 +245,7 @@ fn stop_robot(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleComm
     if session.robot.is_stopped_by_wizard() {
         return None;
     }
-    send(model, session, Event::RobotStopped, NoticeLevel::Alarm, "the robot is stopped")
+    send_telling(model, session, Event::RobotStopped, NoticeLevel::Alarm, "the robot is stopped")
 }
 
 fn answer(
@@ -268,8 +277,7 @@ fn answer(
     let again = reopens(model, action.as_ref());
     // The key that opened the question answers it with yes, but not while it may still be held down.
     if again && touch == KeyPressKind::Again {
-        ask_again(model, chord);
-        return None;
+        return ask_again(model, chord);
     }
     model.dialog = None;
     let yes = chord == KeyChord::char('y') || again;

@@ -24,7 +24,7 @@ use tomcom_session::replay::ReplayLandmark;
 use tomcom_session::settings::{ParticipantKind, SessionSpec};
 
 /// Key bindings of a console: the key table.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct KeyBindings {
     /// Key bindings in the order of the help.
     pub bindings: Vec<KeyBinding>,
@@ -41,8 +41,8 @@ impl KeyBindings {
     /// # Errors
     /// A key has two meanings, or an entry of the key file is invalid.
     pub fn live(kitchen: &Kitchen, spec: &SessionSpec, map: &KeyFileBindings) -> Result<KeyBindings, KeyError> {
-        let Consoles { comparing, mut bindings, .. } =
-            Consoles::from_bindings(lines(kitchen, map)?, KeyFileTable::Console);
+        let mut bindings = lines(kitchen, map)?;
+        let comparing = take(&mut bindings, KeyFileTable::Console, |action| matches!(action, KeyAction::Differ(_)));
         let marks = marks(kitchen, &bindings);
         let at_keyboard = spec.participant.kind == ParticipantKind::Keyboard;
         let highlights = spec.highlights(kitchen);
@@ -89,8 +89,9 @@ impl KeyBindings {
     /// # Errors
     /// The errors of [`KeyBindings::live`]: a key with two meanings, or an invalid entry of the key file.
     pub fn replay(kitchen: &Kitchen, map: &KeyFileBindings) -> Result<KeyBindings, KeyError> {
-        let Consoles { comparing, coding, mut bindings } =
-            Consoles::from_bindings(lines(kitchen, map)?, KeyFileTable::Replay);
+        let mut bindings = lines(kitchen, map)?;
+        let comparing = take(&mut bindings, KeyFileTable::Replay, |action| matches!(action, KeyAction::Differ(_)));
+        let coding = take(&mut bindings, KeyFileTable::Replay, |action| matches!(action, KeyAction::Rate(_)));
         let marks = marks(kitchen, &bindings);
         bindings.retain(|line| line.section == KeyFileTable::Replay && !line.chords.is_empty());
         Ok(KeyBindings { bindings, marks, comparing, coding })
@@ -111,17 +112,14 @@ impl KeyBindings {
             !tells && line.action != KeyAction::Belief
         });
         for line in &mut self.bindings {
-            let marks = &self.marks;
-            line.chords.retain(|chord| !marks.contains(&Some(*chord)));
             if let Some((rate, help)) = table::choosing(&line.action) {
                 (line.action, line.help) = (KeyAction::Rate(rate), help.to_string());
             }
         }
-        for line in &mut self.coding {
-            let marks = &self.marks;
-            line.chords.retain(|chord| !marks.contains(&Some(*chord)));
-        }
         self.bindings.append(&mut self.coding);
+        for line in &mut self.bindings {
+            line.chords.retain(|chord| !self.marks.contains(&Some(*chord)));
+        }
         self.bindings.extend(table::causes(kitchen, &self.marks));
         self.bindings.retain(|line| !line.chords.is_empty());
         self
@@ -159,24 +157,11 @@ impl KeyBindings {
     }
 }
 
-/// Key bindings of a console: those of the comparison, those of a rater, and all others.
-struct Consoles {
-    comparing: Vec<KeyBinding>,
-    coding: Vec<KeyBinding>,
-    bindings: Vec<KeyBinding>,
-}
-
-impl Consoles {
-    fn from_bindings(lines: Vec<KeyBinding>, section: KeyFileTable) -> Consoles {
-        let (mut comparing, others): (Vec<KeyBinding>, Vec<KeyBinding>) =
-            lines.into_iter().partition(|line| matches!(line.action, KeyAction::Differ(_)));
-        let (mut coding, bindings): (Vec<KeyBinding>, Vec<KeyBinding>) =
-            others.into_iter().partition(|line| matches!(line.action, KeyAction::Rate(_)));
-        for some in [&mut comparing, &mut coding] {
-            some.retain(|line| line.section == section && !line.chords.is_empty());
-        }
-        Consoles { comparing, coding, bindings }
-    }
+/// Takes the bindings of these actions out of a table; those in this section of a key file are active in some uses of the
+/// console.
+fn take(lines: &mut Vec<KeyBinding>, section: KeyFileTable, is_it: fn(&KeyAction) -> bool) -> Vec<KeyBinding> {
+    let taken = lines.extract_if(.., |line| is_it(&line.action));
+    taken.filter(|line| line.section == section && !line.chords.is_empty()).collect()
 }
 
 /// All key bindings of the live console and of the replay for a kitchen, after a key file is applied. No key has two
@@ -316,9 +301,7 @@ impl KeyFileBindings {
         }
         Ok(())
     }
-}
 
-impl KeyFileBindings {
     /// Removes from the palette and from the probe actions, unless the key file assigns them keys, every key that the
     /// file assigns to another action. Key files in old recordings may not know these newer actions.
     fn spare_keys(&self, lines: &mut [KeyBinding]) {

@@ -138,7 +138,7 @@ impl KitchenMap {
                 && rows
                     .iter()
                     .all(|row| row.iter().filter(|item| column.iter().any(|c| c.thing == item.thing)).count() <= 1);
-            let own: Vec<Vec<&Item>> = clusters_forced(column);
+            let own = one_by_one(column, |area| area.y + area.h / 2.0);
             let lines = if shares_rows { &rows } else { &own };
             for (line, members) in lines.iter().enumerate() {
                 let Some(item) = members.iter().find(|item| column.iter().any(|c| c.thing == item.thing)) else {
@@ -196,17 +196,9 @@ impl KitchenMapBox {
     /// Pairs of wall display coordinate and terminal coordinate along one axis, between which coordinates are
     /// interpolated.
     fn knots(&self, axis: usize) -> [(f64, f64); 4] {
-        let (area, cells) = match axis {
-            0 => ([self.area.x, self.area.x + self.area.w], [self.cells.x, self.cells.right()]),
-            _ => ([self.area.y, self.area.y + self.area.h], [self.cells.y, self.cells.bottom()]),
-        };
+        let (area, cells) = (extent(self.area, axis), bounds(self.cells).0[axis]);
         let (display, screen) = (self.display.0[axis], self.screen.0[axis]);
-        [
-            (display[0], screen[0]),
-            (area[0], f64::from(cells[0])),
-            (area[1], f64::from(cells[1])),
-            (display[1], screen[1]),
-        ]
+        [(display[0], screen[0]), (area[0], cells[0]), (area[1], cells[1]), (display[1], screen[1])]
     }
 }
 
@@ -259,11 +251,7 @@ fn bounds(cells: Rect) -> Bounds {
 
 /// The orders as lines one below another, each as wide as the area.
 fn lines_of_orders(items: &[&Item], cells: Rect, display_y: [f64; 2]) -> Vec<KitchenMapBox> {
-    let groups: Vec<Vec<&Item>> = {
-        let mut sorted = items.to_vec();
-        sorted.sort_by(|a, b| a.area.x.total_cmp(&b.area.x));
-        sorted.into_iter().map(|item| vec![item]).collect()
-    };
+    let groups = one_by_one(items, |area| area.x);
     let place = |(index, group): (usize, &Vec<&Item>)| {
         let region = share(cells, groups.len(), index);
         let display = Bounds([ends(&groups, index, 0, [0.0, 1.0]), display_y]);
@@ -365,10 +353,10 @@ pub(super) fn clusters<'a>(items: &[&'a Item], axis: usize) -> Vec<Vec<&'a Item>
     groups
 }
 
-/// Puts every kitchen element into a row of its own, from top to bottom.
-pub(super) fn clusters_forced<'a>(items: &[&'a Item]) -> Vec<Vec<&'a Item>> {
+/// Puts every kitchen element into a group of its own, in the order of their places.
+fn one_by_one<'a>(items: &[&'a Item], place: fn(DisplayArea) -> f64) -> Vec<Vec<&'a Item>> {
     let mut sorted = items.to_vec();
-    sorted.sort_by(|a, b| (a.area.y + a.area.h / 2.0).total_cmp(&(b.area.y + b.area.h / 2.0)));
+    sorted.sort_by(|a, b| place(a.area).total_cmp(&place(b.area)));
     sorted.into_iter().map(|item| vec![item]).collect()
 }
 

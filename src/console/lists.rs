@@ -48,8 +48,7 @@ impl ListCursor {
             KeyCode::Home => self.at = 0,
             KeyCode::End => self.at = last,
             KeyCode::Enter if self.at < rows => return ListReply::Taken,
-            KeyCode::Esc if self.filter.is_empty() => return ListReply::Left,
-            KeyCode::Esc => self.filter.clear(),
+            KeyCode::Esc => return ListReply::Left,
             KeyCode::Backspace => drop(self.filter.pop()),
             // Other signs are not part of the filter, so that a question mark does not empty the list.
             KeyCode::Char(letter) if is_typed(letter) => self.filter.push(letter),
@@ -401,10 +400,10 @@ pub struct RecordingPicker {
     pub cursor: ListCursor,
 }
 
-/// Result of a key in the list of recordings.
+/// What the user of a list of recordings, or of a question before a recording, decides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RecordingReply {
-    /// The recording with this index in [`RecordingPicker::rows`] was chosen.
+pub enum ListChoice {
+    /// The row or the answer with this index.
     Chosen(usize),
     Leave,
 }
@@ -420,11 +419,11 @@ impl RecordingPicker {
         self.cursor.found(self.rows.iter().map(|row| row.join(" ")))
     }
 
-    pub fn key(&mut self, key: &KeyEvent) -> Option<RecordingReply> {
+    pub fn key(&mut self, key: &KeyEvent) -> Option<ListChoice> {
         let has_control = key.modifiers.contains(KeyModifiers::CONTROL);
         match (key.kind, key.code) {
             (KeyEventKind::Release, _) => None,
-            (_, KeyCode::Char('c')) if has_control => Some(RecordingReply::Leave),
+            (_, KeyCode::Char('c')) if has_control => Some(ListChoice::Leave),
             // A held enter key does not open a recording.
             (KeyEventKind::Repeat, KeyCode::Enter) => None,
             (_, KeyCode::Char(_)) if has_control => None,
@@ -434,7 +433,7 @@ impl RecordingPicker {
 
     /// Moves the cursor to a row of the list, counted among the rows that match the filter; chooses the row if the
     /// cursor was already there.
-    pub fn click(&mut self, row: usize) -> Option<RecordingReply> {
+    pub fn click(&mut self, row: usize) -> Option<ListChoice> {
         if self.cursor.at == row {
             return self.take(KeyCode::Enter);
         }
@@ -447,12 +446,12 @@ impl RecordingPicker {
     }
 
     /// Handles a key in the list of recordings that is pressed without ctrl.
-    pub fn take(&mut self, code: KeyCode) -> Option<RecordingReply> {
+    pub fn take(&mut self, code: KeyCode) -> Option<ListChoice> {
         let left = self.left();
         match self.cursor.key(left.len(), code) {
             ListReply::Open => None,
-            ListReply::Left => Some(RecordingReply::Leave),
-            ListReply::Taken => left.get(self.cursor.at).map(|&row| RecordingReply::Chosen(row)),
+            ListReply::Left => Some(ListChoice::Leave),
+            ListReply::Taken => left.get(self.cursor.at).map(|&row| ListChoice::Chosen(row)),
         }
     }
 }
@@ -470,13 +469,6 @@ pub struct StartPrompt {
     pub missing_page: Option<String>,
 }
 
-/// Reply of the user to a question before a recording.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum StartReply {
-    Answer(usize),
-    Leave,
-}
-
 impl StartPrompt {
     /// A question of which no answer is chosen.
     pub fn new(title: String, text: Vec<String>, answers: Vec<String>) -> StartPrompt {
@@ -484,14 +476,14 @@ impl StartPrompt {
     }
 
     /// The reply that a key gives; `None` for keys that choose an answer, for other keys, and for key repeat.
-    pub fn reply(&mut self, key: &KeyEvent) -> Option<StartReply> {
+    pub fn reply(&mut self, key: &KeyEvent) -> Option<ListChoice> {
         if key.kind != KeyEventKind::Press {
             return None;
         }
         match key.code {
-            KeyCode::Esc => Some(StartReply::Leave),
-            KeyCode::Char('c') if key.modifiers.contains(KeyModifiers::CONTROL) => Some(StartReply::Leave),
-            KeyCode::Enter => self.chosen.map(StartReply::Answer),
+            KeyCode::Esc => Some(ListChoice::Leave),
+            KeyCode::Char('c') if key.modifiers.contains(KeyModifiers::CONTROL) => Some(ListChoice::Leave),
+            KeyCode::Enter => self.chosen.map(ListChoice::Chosen),
             KeyCode::Char(digit @ '1'..='9') => {
                 let index = usize::from(digit as u8 - b'1');
                 self.chosen = Some(index).filter(|index| *index < self.answers.len()).or(self.chosen);

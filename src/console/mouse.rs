@@ -4,7 +4,7 @@
 use crossterm::event::KeyCode;
 use ratatui::layout::Rect;
 
-use super::actions::{act, refusal};
+use super::actions::{act, refusal, refuse, shown};
 use super::chord::KeyChord;
 use super::console_model::{ConsoleCommand, ConsoleModel, Dialog, NoticeLevel, ReplayAction};
 use super::form::sheet;
@@ -16,11 +16,11 @@ use super::view::click_targets;
 use super::view::regions::PanelAreas;
 use super::{coding, lists};
 use tomcom_core::base::time::SessionTime;
+use tomcom_core::communication::Signal;
 use tomcom_core::communication::offer::Offer;
-use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::kitchen::{Agent, AspectId, ButtonAction as Use, ButtonId, LocationId};
 use tomcom_session::settings::WizardVisibility;
-use tomcom_session::{Event, Session, offers};
+use tomcom_session::{Session, offers};
 
 /// Longest time between the two clicks of a double click, in seconds: the second click of a double click does not
 /// confirm a question.
@@ -59,7 +59,7 @@ pub(super) fn click(model: &mut ConsoleModel, session: &Session, cell: (u16, u16
             None
         }
         Some(ClickAction::Error(index)) => coding::go_to(model, index),
-        Some(ClickAction::Seek(time)) => Some(ConsoleCommand::Move(ReplayAction::ToTime(time))),
+        Some(ClickAction::Seek(to)) => Some(ConsoleCommand::Move(to)),
         None => {
             let is_covered = model.playback.is_none() && sheet(session).is_some();
             if model.dialog.is_none() && !is_covered {
@@ -171,7 +171,8 @@ pub enum ClickAction {
     Belief(AspectId),
     /// While a rater codes errors: go to the error with this index in the list.
     Error(usize),
-    Seek(SessionTime),
+    /// Go to a time of the recording.
+    Seek(ReplayAction),
 }
 
 /// Screen cells that can be clicked, with the action of a click.
@@ -198,7 +199,7 @@ pub struct SendConfirmation {
 /// sent.
 pub(super) fn ask(model: &mut ConsoleModel, session: &Session, chord: KeyChord, action: &KeyAction) {
     let asked = match action {
-        KeyAction::Signal(_, signal) => match refusal(session, model.now, &shown(signal)) {
+        KeyAction::Signal(_, signal) => match refusal(session, model.now, &shown(signal.clone())) {
             None => Ok((signal.clone(), None)),
             Some(reason) => Err(reason),
         },
@@ -235,24 +236,6 @@ pub fn expire(model: &mut ConsoleModel, session: &Session) {
     }
 }
 
-/// A key while the console asks whether to send a clicked signal: enter sends if it is newly pressed (not held), esc
-/// cancels.
-pub(super) fn answer(
-    model: &mut ConsoleModel,
-    session: &Session,
-    code: KeyCode,
-    is_press: bool,
-) -> Option<ConsoleCommand> {
-    match model.dialog.clone() {
-        Some(Dialog::Send(confirmation)) if code == KeyCode::Enter && is_press => confirm(model, session, confirmation),
-        Some(Dialog::Send(_)) if code == KeyCode::Esc => {
-            model.dialog = None;
-            None
-        }
-        _ => None,
-    }
-}
-
 /// Sends the clicked signal. After a click on an offer, nothing is sent if that offer has closed meanwhile.
 pub(super) fn confirm(
     model: &mut ConsoleModel,
@@ -262,18 +245,11 @@ pub(super) fn confirm(
     model.dialog = None;
     let now_meant = offers::enter(session, model.now).ok().map(|(offer, _)| offer.seq);
     match confirmation.offer {
-        Some(offer) if now_meant != Some(offer) => {
-            model.say(NoticeLevel::Refused, "signal not sent: the clicked offer has closed");
-            None
-        }
+        Some(offer) if now_meant != Some(offer) => refuse(model, "signal not sent: the clicked offer has closed"),
         Some(_) => act(model, session, KeyAction::Accept),
         None => {
             let location = confirmation.signal.location(&session.kitchen)?;
             act(model, session, KeyAction::Signal(location, confirmation.signal))
         }
     }
-}
-
-fn shown(signal: &Signal) -> Event {
-    Event::SignalShown { by: Sender::Wizard, signal: signal.clone(), offer: None }
 }

@@ -1,6 +1,6 @@
 //! Which actions have an effect now: the line of key hints shows only those.
 
-use super::actions::{preset_notes, refusal};
+use super::actions::{preset_notes, refusal, shown};
 use super::beliefs::{beliefs, visibility};
 use super::console_model::{ComparisonAction, ConsoleModel, Dialog, Playback, ReplayAction, SPEEDS};
 use super::form::sheet;
@@ -89,11 +89,7 @@ fn does(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {
     let admits = |event: Event| admit(session, &event).is_ok();
     let runs = matches!(session.phase, TrialPhase::Running | TrialPhase::Paused);
     match action {
-        KeyAction::Signal(_, signal) => {
-            let (by, signal) = (Sender::Wizard, signal.clone());
-            let event = Event::SignalShown { by, signal, offer: None };
-            refusal(session, model.now, &event).is_none()
-        }
+        KeyAction::Signal(_, signal) => refusal(session, model.now, &shown(signal.clone())).is_none(),
         KeyAction::Accept => !is_right_after_list(model) && offers::enter(session, model.now).is_ok(),
         KeyAction::TakeBack => admits(Event::SignalEnded { reason: SignalEndReason::TakenBack }),
         KeyAction::Press(_) => session.is_running(),

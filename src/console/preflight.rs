@@ -7,6 +7,7 @@ use std::path::Path;
 
 use crossterm::event::KeyCode;
 
+use super::actions::{open_dialog, refuse, resume_robot};
 use super::console_model::{
     ConsoleCommand, ConsoleModel, Dialog, LslStatus, NoticeLevel, RecordingStatus, RerunStreamStatus,
 };
@@ -64,7 +65,7 @@ fn arm_remedy(model: &ConsoleModel, stage: ArmStage) -> String {
 
 /// Preflight check of how far a real arm is; `None` if it is ready, or is no real one.
 fn arm_stage(session: &Session, model: &ConsoleModel) -> Option<PreflightCheck> {
-    let failed = |found: String, remedy| Some(PreflightCheck::new("robot", PreflightVerdict::Failed, found, remedy));
+    let failed = |found: String, remedy| Some(PreflightCheck::failed("robot", found, remedy));
     match (session.spec.robot.arm, &session.robot.arm.stage) {
         (ArmKind::Ur(_), Some((ArmStage::Ready, _))) => None,
         (ArmKind::Ur(_), Some((stage, found))) => {
@@ -84,21 +85,12 @@ fn robot(session: &Session, model: &ConsoleModel) -> PreflightCheck {
     match (session.robot.stopped, session.robot.held) {
         (true, _) => {
             let resume = key(model, &KeyAction::ResumeRobot);
-            PreflightCheck::new(
-                "robot",
-                PreflightVerdict::Failed,
-                "the robot is stopped",
-                format!("{resume} resumes the robot"),
-            )
+            PreflightCheck::failed("robot", "the robot is stopped", format!("{resume} resumes the robot"))
         }
         (false, true) => {
             let release = key(model, &KeyAction::Manual(ManualAction::HoldRobot));
-            PreflightCheck::new(
-                "robot",
-                PreflightVerdict::Warning,
-                "the robot is held before its first press",
-                format!("{release} releases the robot"),
-            )
+            let remedy = format!("{release} releases the robot");
+            PreflightCheck::warning("robot", "the robot is held before its first press", remedy)
         }
         (false, false) => PreflightCheck::ok("robot", "the robot is ready"),
     }
@@ -117,26 +109,17 @@ fn probes(session: &Session, model: &ConsoleModel) -> Option<PreflightCheck> {
         ProbeAnswerer::Console if !is_wanted(session) => PreflightCheck::ok("probes", found("answered at the console")),
         ProbeAnswerer::Console => {
             let remedy = "open the participant's page, or read the questions out and enter the answers here";
-            PreflightCheck::new("probes", PreflightVerdict::Warning, found("participant's page missing"), remedy)
+            PreflightCheck::warning("probes", found("participant's page missing"), remedy)
         }
     })
 }
 
 fn recording(model: &ConsoleModel) -> PreflightCheck {
+    let failed = |found| PreflightCheck::failed("recording", found, "quit tomcom and start it again");
     match &model.recording {
         RecordingStatus::On(folder) => PreflightCheck::ok("recording", folder.clone()),
-        RecordingStatus::Off => PreflightCheck::new(
-            "recording",
-            PreflightVerdict::Failed,
-            "the session is not recorded",
-            "quit tomcom and start it again",
-        ),
-        RecordingStatus::Lost => PreflightCheck::new(
-            "recording",
-            PreflightVerdict::Failed,
-            "the recording cannot be written",
-            "quit tomcom and start it again",
-        ),
+        RecordingStatus::Off => failed("the session is not recorded"),
+        RecordingStatus::Lost => failed("the recording cannot be written"),
     }
 }
 
@@ -148,7 +131,7 @@ fn viewers(viewers: &RerunStreamStatus) -> PreflightCheck {
         Some(address) => format!("Rerun viewers connect at {address}"),
         None => "stream for Rerun is recorded, no viewer can connect".to_string(),
     };
-    let warning = |found, remedy: &str| PreflightCheck::new("rerun", PreflightVerdict::Warning, found, remedy);
+    let warning = |found, remedy: &str| PreflightCheck::warning("rerun", found, remedy);
     match (dropped, address.as_ref().is_some_and(is_open)) {
         (0, false) => PreflightCheck::ok("rerun", found),
         (0, true) => warning(
@@ -170,7 +153,7 @@ fn lsl(status: &LslStatus) -> PreflightCheck {
         lost => {
             let remedy = "close other programs that use the processor; the recording itself has every event";
             let lost = count(lost, "sample", "samples");
-            PreflightCheck::new("lsl", PreflightVerdict::Warning, format!("{lost} lost; {found}"), remedy)
+            PreflightCheck::warning("lsl", format!("{lost} lost; {found}"), remedy)
         }
     }
 }
@@ -178,35 +161,25 @@ fn lsl(status: &LslStatus) -> PreflightCheck {
 fn keyboard(model: &ConsoleModel) -> PreflightCheck {
     match model.focused {
         true => PreflightCheck::ok("keyboard", "this window has the keyboard focus"),
-        false => PreflightCheck::new(
-            "keyboard",
-            PreflightVerdict::Failed,
-            "this window does not have the keyboard focus",
-            "click into this window",
-        ),
+        false => {
+            PreflightCheck::failed("keyboard", "this window does not have the keyboard focus", "click into this window")
+        }
     }
 }
 
 /// Starts the trial if all preflight checks are ok; else opens the list of checks.
 pub(super) fn start(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
-    match all_ok(&checks(session, model)) {
-        true => go(model, session, false),
-        false => {
-            if let Err(reason) = admit(session, &Event::TrialStarted) {
-                model.say(NoticeLevel::Refused, reason);
-                return None;
-            }
-            model.dialog = Some(Dialog::Preflight);
-            None
-        }
+    match (all_ok(&checks(session, model)), admit(session, &Event::TrialStarted)) {
+        (true, _) => go(model, session, false),
+        (false, Err(reason)) => refuse(model, reason),
+        (false, Ok(())) => open_dialog(model, Dialog::Preflight),
     }
 }
 
 fn go(model: &mut ConsoleModel, session: &Session, overridden: bool) -> Option<ConsoleCommand> {
     let checks = checks(session, model);
     if let Err(reason) = admit(session, &Event::TrialStarted) {
-        model.say(NoticeLevel::Refused, reason);
-        return None;
+        return refuse(model, reason);
     }
     model.dialog = None;
     let words =
@@ -230,7 +203,7 @@ pub(super) fn answer(
             None
         }
         // Keys that fix a problem also work in the list of preflight checks.
-        (_, Some(KeyAction::ResumeRobot)) => super::actions::resume_robot(model, session),
+        (_, Some(KeyAction::ResumeRobot)) => resume_robot(model, session),
         (_, Some(KeyAction::Manual(repair @ (ManualAction::HoldRobot | ManualAction::ConfirmArm)))) if is_press => {
             super::interventions::act(model, session, repair)
         }
@@ -304,7 +277,7 @@ impl ParticipantDisplayHealth {
     pub fn check(&self, gaze: GazeSource) -> PreflightCheck {
         let Some([width, height]) = self.page else {
             let found = self.with_code("participant's page not connected".to_string());
-            return PreflightCheck::new("display", PreflightVerdict::Failed, found, self.address());
+            return PreflightCheck::failed("display", found, self.address());
         };
         let trip = self.round_trip_ms.map_or(String::new(), |ms| format!(", {ms:.0} ms round trip"));
         let others = match self.watching {

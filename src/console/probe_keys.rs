@@ -3,7 +3,7 @@
 use crossterm::event::KeyCode;
 
 use super::actions::{refuse, send};
-use super::console_model::{ConsoleCommand, ConsoleModel, NoticeLevel};
+use super::console_model::{ConsoleCommand, ConsoleModel};
 use super::form::SheetKey;
 use tomcom_session::probes::{ProbeEvent, ProbeOrigin, StartedProbe};
 use tomcom_session::settings::ParticipantKind;
@@ -80,7 +80,7 @@ pub(super) fn write(
             true => (Event::TrialPaused, "the freeze probe is paused"),
             false => (Event::TrialResumed, "the freeze probe continues"),
         };
-        return send(model, session, event, NoticeLevel::Done, words);
+        return send(model, session, event, words);
     }
     match answerer(session, model) {
         ProbeAnswerer::Simulated => return refuse(model, "the simulated participant answers"),
@@ -92,17 +92,16 @@ pub(super) fn write(
     let confidence = session.spec.probes.as_ref().is_some_and(|probes| probes.confidence);
     match stroke {
         SheetKey::Digit(digit @ 1..=3) if entry.asks_sure => entry.sure = Some(digit),
-        SheetKey::Digit(_) if entry.asks_sure => return refuse(model, "how sure is the participant? 1, 2 or 3"),
+        SheetKey::Digit(_) | SheetKey::Forward | SheetKey::Back if entry.asks_sure => {
+            return refuse(model, "how sure is the participant? 1, 2 or 3");
+        }
         SheetKey::Digit(digit) => {
             let begun = entry.choice.filter(|_| entry.is_typed).unwrap_or(0);
             let number = 10 * begun + usize::from(digit);
             if number > choices {
-                return refuse(model, &format!("the question has no choice {number}; backspace deletes a digit"));
+                return refuse(model, format!("the question has no choice {number}; backspace deletes a digit"));
             }
             (entry.choice, entry.is_typed) = (Some(number), true);
-        }
-        SheetKey::Forward | SheetKey::Back if entry.asks_sure => {
-            return refuse(model, "how sure is the participant? 1, 2 or 3");
         }
         SheetKey::Forward | SheetKey::Back => {
             let by = if stroke == SheetKey::Forward { 1 } else { -1 };
@@ -125,7 +124,7 @@ pub(super) fn write(
                 let event = ProbeEvent::Answered { probe, question, answer, confidence: entry.sure, on };
                 entry.is_typed = false;
                 model.probe_entry = entry;
-                return send(model, session, Event::Probe(event), NoticeLevel::Done, "");
+                return send(model, session, Event::Probe(event), "");
             }
         },
         SheetKey::Leave | SheetKey::Skip | SheetKey::Letter(_) => {}

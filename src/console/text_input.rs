@@ -110,5 +110,5 @@ pub(super) fn paste(model: &mut ConsoleModel, session: &Session, text: Option<&s
         },
         _ => Err(refusal_of_paste(Some(text)).to_string()),
     };
-    pasted.err().and_then(|reason| refuse(model, &reason))
+    pasted.err().and_then(|reason| refuse(model, reason))
 }

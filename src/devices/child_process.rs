@@ -6,6 +6,7 @@
 //! thread that started the program, or none.
 
 use std::io;
+use std::path::PathBuf;
 #[cfg(unix)]
 use std::process::Stdio;
 use std::process::{Child, Command};
@@ -17,6 +18,13 @@ use std::time::{Duration, Instant};
 #[cfg(unix)]
 const KEEPER: &str = "trap '' TERM; cd /; read -r end; kill -TERM 0; sleep 2; kill -KILL 0";
 const STEP: Duration = Duration::from_millis(5);
+
+/// The program of this name in the folders of `PATH`.
+pub(crate) fn find_program(name: &str) -> Option<PathBuf> {
+    let name = format!("{name}{}", std::env::consts::EXE_SUFFIX);
+    let folders = std::env::var_os("PATH").unwrap_or_default();
+    std::env::split_paths(&folders).map(|folder| folder.join(&name)).find(|path| path.is_file())
+}
 
 /// A program that ends with this value, or with this program.
 #[derive(Debug)]

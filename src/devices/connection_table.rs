@@ -64,7 +64,8 @@ pub struct ConnectionTable {
 #[derive(Debug)]
 pub struct ConnectionHandle {
     pub number: u64,
-    address: IpAddr,
+    /// Network address of the connection's other end, as the limits count addresses; see [`network_of`].
+    pub address: IpAddr,
     table: Arc<ConnectionTable>,
     closing: watch::Receiver<bool>,
 }
@@ -108,10 +109,9 @@ impl ConnectionTable {
     fn replaceable(&self, entries: &[ConnectionEntry], only: Option<IpAddr>, now: Instant) -> Option<usize> {
         let is_waiting = |entry: &ConnectionEntry| entry.standing == ConnectionStanding::Waiting;
         let mut waiting = BTreeMap::<IpAddr, usize>::new();
-        entries
-            .iter()
-            .filter(|entry| is_waiting(entry))
-            .for_each(|entry| *waiting.entry(entry.address).or_default() += 1);
+        for entry in entries.iter().filter(|entry| is_waiting(entry)) {
+            *waiting.entry(entry.address).or_default() += 1;
+        }
         let crowd = waiting.values().copied().max().unwrap_or_default();
         let is_replaceable = |entry: &ConnectionEntry| match (only, entry.standing) {
             (Some(address), _) if address != entry.address => false,
@@ -125,21 +125,12 @@ impl ConnectionTable {
         candidates.min_by_key(|(_, entry)| (!is_waiting(entry), entry.heard)).map(|(index, _)| index)
     }
 
-    pub fn count(&self) -> usize {
-        self.lock().entries.len()
-    }
-
     fn lock(&self) -> MutexGuard<'_, ConnectionEntries> {
         self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl ConnectionHandle {
-    /// Network address of the connection's other end, as the limits count addresses; see [`network_of`].
-    pub fn address(&self) -> IpAddr {
-        self.address
-    }
-
     /// Records that data arrived on the network connection.
     pub fn heard(&self, now: Instant) {
         self.change(|entry| entry.heard = now);
@@ -172,9 +163,12 @@ impl ConnectionHandle {
     }
 
     /// Completes when another connection replaces this one, which then has to be closed.
-    pub async fn closed(&self) {
-        // An error means that the table entry no longer exists, which has the same consequence.
-        let _ = self.closing.clone().wait_for(|closing| *closing).await;
+    pub fn closed(&self) -> impl Future<Output = ()> + use<> {
+        let mut closing = self.closing.clone();
+        async move {
+            // An error means that the table entry no longer exists, which has the same consequence.
+            let _ = closing.wait_for(|closing| *closing).await;
+        }
     }
 
     fn change(&self, change: impl FnOnce(&mut ConnectionEntry)) {

@@ -4,6 +4,8 @@ use std::ffi::OsStr;
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Command, Stdio};
 
+use super::child_process::find_program;
+
 /// How to get ffmpeg, for messages.
 pub const REMEDY: &str = "install ffmpeg (Debian and Ubuntu: apt install ffmpeg)";
 /// The filter that makes ffmpeg tell the time of each frame.
@@ -19,8 +21,7 @@ pub enum FfmpegMessage {
 
 /// Whether ffmpeg is in `PATH`.
 pub fn is_installed() -> bool {
-    let name = format!("ffmpeg{}", std::env::consts::EXE_SUFFIX);
-    std::env::split_paths(&std::env::var_os("PATH").unwrap_or_default()).any(|folder| folder.join(&name).is_file())
+    find_program("ffmpeg").is_some()
 }
 
 /// The command, with what all uses of it share. Its error output must be read for it to go on.

@@ -15,8 +15,7 @@ use tokio::time::{sleep, timeout, timeout_at};
 
 use super::arrival::{Arrival, ArrivalWatch};
 use super::connection_table::ConnectionHandle;
-use super::gaze_gate::RejectionReporter;
-use super::gaze_gate::{GazeAccessCheck, GazeAdmission};
+use super::gaze_gate::{GazeAccessCheck, GazeAdmission, RejectionReporter};
 use super::gaze_input::{GazeSenderRejection, TrackerMessage};
 use super::gaze_line::{begins_object, code_in, long_line_fault, opening_fault, parse};
 use super::sender_clock::SenderClock;
@@ -48,33 +47,25 @@ pub(super) struct GazeConnection {
 }
 
 /// Reads a gaze connection until the connection ends, is rejected, or is replaced by another one.
-pub(super) async fn attend(connection: GazeConnection) {
-    let GazeConnection { stream, from, watch, place, gate, rejections, news } = connection;
-    let is_paired = lock(&gate).admission(from.ip()) == GazeAdmission::Open;
-    let mut reader = SampleReader {
-        stream,
-        from,
-        watch,
-        place: &place,
-        gate: &gate,
-        news: &news,
-        lines: LineReader::default(),
-        clock: SenderClock::new(Instant::now()),
-        is_paired,
-    };
+pub(super) async fn attend(sender: GazeConnection) {
+    let closed = sender.place.closed();
+    let is_paired = lock(&sender.gate).admission(sender.from.ip()) == GazeAdmission::Open;
+    let (lines, clock) = (LineReader::default(), SenderClock::new(Instant::now()));
+    let mut reader = SampleReader { sender, lines, clock, is_paired };
     let rejected = tokio::select! {
         biased;
-        () = place.closed() => Err(GazeSenderRejection::GaveWay),
+        () = closed => Err(GazeSenderRejection::GaveWay),
         rejected = reader.read() => rejected,
     };
+    let SampleReader { sender, lines, clock, is_paired } = reader;
     match rejected {
-        Err(why) => rejections.report(from, why, Instant::now()),
-        Ok(()) if reader.is_paired && reader.lines.has_line => drop(news.send(TrackerMessage::Closed).await),
+        Err(why) => sender.rejections.report(sender.from, why, Instant::now()),
+        Ok(()) if is_paired && lines.has_line => drop(sender.news.send(TrackerMessage::Closed).await),
         Ok(()) => {}
     }
-    if reader.clock.is_faulty() {
+    if clock.is_faulty() {
         // Nothing is wrong with the stamps of the next sender, as far as is known.
-        let _ = news.send(TrackerMessage::Stamps(None)).await;
+        let _ = sender.news.send(TrackerMessage::Stamps(None)).await;
     }
 }
 
@@ -144,20 +135,15 @@ impl LineReader {
 }
 
 /// Reads the lines of a gaze connection.
-struct SampleReader<'a> {
-    stream: TcpStream,
-    from: SocketAddr,
-    watch: ArrivalWatch,
-    place: &'a ConnectionHandle,
-    gate: &'a SharedGate,
-    news: &'a Sender<TrackerMessage>,
+struct SampleReader {
+    sender: GazeConnection,
     lines: LineReader,
     clock: SenderClock,
     /// Whether the sender of gaze is admitted, so that its lines are read.
     is_paired: bool,
 }
 
-impl SampleReader<'_> {
+impl SampleReader {
     /// Reads lines until the gaze connection ends; TCP slows down a sender that is too fast.
     ///
     /// # Errors
@@ -166,7 +152,7 @@ impl SampleReader<'_> {
         let mut buffer = vec![0; CHUNK];
         let first_by = tokio::time::Instant::now() + FIRST_LINE;
         loop {
-            let readable = self.watch.wait(|| self.stream.readable());
+            let readable = self.sender.watch.wait(|| self.sender.stream.readable());
             if self.lines.has_line {
                 // An error shows when the stream is read.
                 let _ = readable.await;
@@ -178,15 +164,15 @@ impl SampleReader<'_> {
             }
             loop {
                 let asked = Instant::now();
-                let count = match self.stream.try_read(&mut buffer) {
+                let count = match self.sender.stream.try_read(&mut buffer) {
                     Ok(count @ 1..) => count,
                     Err(error) if error.kind() == io::ErrorKind::WouldBlock => {
-                        self.watch.was_empty(asked);
+                        self.sender.watch.was_empty(asked);
                         break;
                     }
                     Ok(0) | Err(_) => return self.end().await,
                 };
-                if !self.take(&buffer[..count], self.watch.arrival(Instant::now())).await? {
+                if !self.take(&buffer[..count], self.sender.watch.arrival(Instant::now())).await? {
                     return Ok(());
                 }
             }
@@ -195,7 +181,7 @@ impl SampleReader<'_> {
 
     /// Handles the end of the connection, whose last line may lack its newline.
     async fn end(&mut self) -> Result<(), GazeSenderRejection> {
-        let arrival = self.watch.arrival(Instant::now());
+        let arrival = self.sender.watch.arrival(Instant::now());
         if !self.lines.is_too_long
             && let Some(found) = self.lines.end(arrival.counted())
         {
@@ -238,9 +224,10 @@ impl SampleReader<'_> {
         let verdict = match self.is_paired {
             true => Ok(()),
             false => {
-                let delay = code.as_deref().map(|code| lock(self.gate).delay(code, Instant::now()));
+                let gate = &self.sender.gate;
+                let delay = code.as_deref().map(|code| lock(gate).delay(code, Instant::now()));
                 sleep(delay.unwrap_or_default()).await;
-                lock(self.gate).pair(self.from, code.as_deref(), Instant::now())
+                lock(gate).pair(self.sender.from, code.as_deref(), Instant::now())
             }
         };
         self.is_paired = verdict.is_ok();
@@ -253,7 +240,7 @@ impl SampleReader<'_> {
             ),
         };
         // A sender that does not read the program's reply notices the result when the connection is closed.
-        let _ = timeout(ANSWER, self.stream.write_all(answer.as_bytes())).await;
+        let _ = timeout(ANSWER, self.sender.stream.write_all(answer.as_bytes())).await;
         self.is_paired
     }
 
@@ -262,11 +249,11 @@ impl SampleReader<'_> {
         if together.iter().any(|one| matches!(one, TrackerMessage::Sample(..))) {
             // The connection table's limits never reject an admitted sender: no more connections can be open than may
             // be admitted. Only samples keep a connection's place, and nothing else that it sends.
-            let _ = self.place.admit();
-            self.place.heard(Instant::now());
+            let _ = self.sender.place.admit();
+            self.sender.place.heard(Instant::now());
         }
         for one in self.clock.stamp(together, arrival) {
-            if self.news.send(one).await.is_err() {
+            if self.sender.news.send(one).await.is_err() {
                 return false;
             }
         }

@@ -35,7 +35,7 @@ pub fn read(path: &Path, map: &SurfaceHomography, settings: &TrackerSpec) -> Fil
     let start_s = settings.file_start_s;
     let is_log = path.extension().is_some_and(|extension| extension == "jsonl");
     let is_ours = is_log || path.join(LOG_NAME).exists();
-    if !is_ours && let Some(TrackerFinding { found, remedy }) = tracker_data(path) {
+    if !is_ours && let Some([found, remedy]) = tracker_data(path) {
         return Err(FileError::from_finding(path, found, remedy));
     }
     let found = match path.is_dir() || is_log {
@@ -86,13 +86,6 @@ const RECORDED: [&str; 7] = ["raw", "time", "pldata", "npy", "mp4", "bin", "json
 /// Largest number of folder entries that are examined.
 const MAX_ENTRIES: usize = 10_000;
 
-/// What was found instead of gaze on the display, and how gaze on the display can be made from it.
-#[derive(Debug, PartialEq, Eq)]
-pub(super) struct TrackerFinding {
-    pub found: String,
-    pub remedy: String,
-}
-
 const PLAYER: &str = "open the recording in Pupil Player with the plugin Surface Tracker and export \
                       gaze_positions_on_surface_NAME.csv in exports/000/surfaces";
 const NEON: &str = "open the recording in Neon Player with the plugin Surface Tracking and export \
@@ -101,8 +94,9 @@ const CLOUD: &str = "Pupil Cloud's Marker Mapper: gaze.csv of its download; or t
                      Neon Player with the \
                      plugin Surface Tracking";
 
-/// What a path contains, if it belongs to an eye tracker's program and is no gaze on the display; else `None`.
-pub(super) fn tracker_data(path: &Path) -> Option<TrackerFinding> {
+/// What a path contains, if it belongs to an eye tracker's program and is no gaze on the display, and how gaze on the
+/// display can be made from it.
+fn tracker_data(path: &Path) -> Option<[String; 2]> {
     let extension = path.extension().and_then(OsStr::to_str).unwrap_or_default();
     if path.is_dir() {
         return folder(path).or_else(|| sub_folders(path).iter().find_map(|sub| folder(sub)));
@@ -110,23 +104,23 @@ pub(super) fn tracker_data(path: &Path) -> Option<TrackerFinding> {
     if extension == "zip" {
         let remedy = "unpack the archive, and give the table in it: gaze_positions_on_surface_NAME.csv, or gaze.csv of Marker \
              Mapper";
-        return Some(TrackerFinding { found: "an archive".to_string(), remedy: remedy.to_string() });
+        return Some(["an archive", remedy].map(str::to_string));
     }
     path.parent().filter(|_| RECORDED.contains(&extension)).and_then(folder)
 }
 
-/// What a folder of an eye tracker's program contains, judged by the names of its files.
-fn folder(folder: &Path) -> Option<TrackerFinding> {
+/// What a folder of an eye tracker's program contains, judged by the names of its files, and the remedy.
+fn folder(folder: &Path) -> Option<[String; 2]> {
     let names = names(folder);
     let has = |name: &str| names.iter().any(|found| found == name);
     let with = |begin: &str, end: &str| names.iter().find(|name| name.starts_with(begin) && name.ends_with(end));
     let finding = |name: &str, what: &str, remedy: &str| {
         let found = format!("{name}: {what}, with gaze in the scene camera's picture");
-        Some(TrackerFinding { found, remedy: remedy.to_string() })
+        Some([found, remedy.to_string()])
     };
     if let Some(table) = table_in(folder, &names) {
         let found = "a folder with a table of gaze on the display".to_string();
-        return Some(TrackerFinding { found, remedy: format!("the table itself: {}", table.display()) });
+        return Some([found, format!("the table itself: {}", table.display())]);
     }
     if has("gaze.pldata") || has("info.player.json") {
         let name = if has("gaze.pldata") { "gaze.pldata" } else { "info.player.json" };

@@ -177,13 +177,9 @@ impl RejectionReporter {
 }
 
 #[cfg(test)]
-mod gaze_gate_tests {
+mod tests {
     use super::*;
-    use crate::gaze_input::TrackerMessage;
     use tokio::sync::mpsc::{Receiver, channel};
-
-    /// Least time between two notices about rejected senders.
-    const NOTICE: Duration = Duration::from_millis(100);
 
     const SAMPLE: &[u8] = b"{\"x\": 0.5, \"y\": 0.5, \"confidence\": 1}\n";
 
@@ -244,12 +240,6 @@ mod gaze_gate_tests {
         // Test: a sender of gaze that needs no code may still send one.
         assert_eq!(gate.lines(sender(1), b"{\"pair\": \"anything\"}\n{}", now), Some(&b"\n{}"[..]));
     }
-}
-
-#[cfg(test)]
-mod gaze_rejections_tests {
-    use super::*;
-    use tokio::sync::mpsc::channel;
 
     #[test]
     fn senders_are_counted_and_not_what_they_send() {

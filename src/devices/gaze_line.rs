@@ -142,30 +142,6 @@ mod tests {
     }
 
     #[test]
-    fn what_is_found_instead_of_lines_is_told() {
-        let utf16 = |text: &str, order: fn(u16) -> [u8; 2]| text.encode_utf16().flat_map(order).collect::<Vec<u8>>();
-        let line = "{\"x\": 0.5, \"y\": 0.5, \"confidence\": 1}\n";
-        for marked in [line.to_string(), format!("\u{feff}{line}")] {
-            for order in [u16::to_le_bytes, u16::to_be_bytes] {
-                assert_eq!(opening_fault(&utf16(&marked, order)), GazeSenderRejection::Utf16, "{marked:?}");
-            }
-        }
-        let found = |text: &str| opening_fault(text.as_bytes());
-        assert_eq!(found(&format!("\u{feff}{line}")), GazeSenderRejection::ByteOrderMark);
-        let stun = opening_fault(b"\x00\x01\x00\x08\x21\x12\xa4\x42");
-        assert!(matches!(stun, GazeSenderRejection::NoObject(_)), "{stun:?}");
-        assert_eq!(found("\r\nPOST / HTTP/1.1\r\n"), GazeSenderRejection::HttpRequest);
-        assert_eq!(found("{'x': 0.5}\n"), GazeSenderRejection::NoObject("{'x': 0.5}".to_string()));
-        assert_eq!(
-            found("\u{1b}[2J0.5;0.5;1;and more than fits"),
-            GazeSenderRejection::NoObject("\\u001b[2J0.5;0.5;1;and more t".to_string())
-        );
-        let objects = "{\"x\": 0.5, \"y\": 0.5, \"confidence\": 1}, ".repeat(3);
-        assert_eq!(long_line_fault(objects.as_bytes(), 100), GazeSenderRejection::NoLineBreak);
-        assert_eq!(long_line_fault(&[b'{'; 200], 100), GazeSenderRejection::LongLine(100));
-    }
-
-    #[test]
     fn a_sample_of_known_age_was_taken_so_long_before_it_arrived() {
         let arrived = Instant::now() + Duration::from_secs(100);
         let with = |age: &str| {

@@ -10,12 +10,9 @@ use csv::StringRecord;
 use encoding_rs::{UTF_16BE, UTF_16LE};
 use encoding_rs_io::{DecodeReaderBytes, DecodeReaderBytesBuilder};
 
-use tomcom_core::base::text::SEPARATORS;
-use tomcom_core::base::text::count;
-use tomcom_core::base::text::printable;
+use tomcom_core::base::text::{SEPARATORS, count, printable};
 use tomcom_core::gaze::GazeSample;
-use tomcom_core::gaze::recorded::GAP_S;
-use tomcom_core::gaze::recorded::{RecordedTimeline, TimeLimits, median_interval};
+use tomcom_core::gaze::recorded::{GAP_S, RecordedTimeline, TimeLimits, median_interval};
 use tomcom_core::gaze::tags::SurfaceHomography;
 use tomcom_session::files::file_error::{FileError, FileResult, open_regular};
 use tomcom_session::log::at_line;
@@ -135,15 +132,13 @@ impl Lines {
         let read = self.input.by_ref().take(MAX_LINE).read_until(b'\n', &mut self.line)? as u64;
         let is_cut = self.line.last() != Some(&b'\n');
         let too_large = |what: String| Err(io::Error::new(io::ErrorKind::FileTooLarge, what));
-        match () {
-            () if is_cut && read == MAX_LINE => {
-                too_large(format!("line {} has more than {MAX_LINE} bytes", self.number))
-            }
-            () if is_cut && self.input.get_ref().limit() == 0 => {
-                too_large(format!("it has more than {MAX_BYTES} bytes"))
-            }
-            () => Ok(read > 0),
+        if is_cut && read == MAX_LINE {
+            return too_large(format!("line {} has more than {MAX_LINE} bytes", self.number));
         }
+        if is_cut && self.input.get_ref().limit() == 0 {
+            return too_large(format!("it has more than {MAX_BYTES} bytes"));
+        }
+        Ok(read > 0)
     }
 
     /// The cells of the present line, without quotation marks and spaces around them.
@@ -272,40 +267,26 @@ impl GazeColumns {
             named.into_iter().find_map(|(found, ns)| Some((found?, Some(*ns))))
         };
         let [x, y] = ["x", "y"].map(|axis| format!("gaze position on surface {axis} [normalized]"));
-        if let Some(x) = place(&x) {
-            let time = with_unit("timestamp").ok_or_else(|| wrong("no column timestamp [ns]".to_string()));
-            let (time, unit_ns) = time?;
-            let (y, blink, recording) = (need(&y)?, place("blink id"), place("recording id"));
-            let exporter = GazeExporter::MarkerMapper;
-            let confidence = None;
-            return Ok(GazeColumns {
-                exporter,
-                separator,
-                time,
-                unit_ns,
-                x,
-                y,
-                confidence,
-                blink,
-                recording,
-                names,
-                row_names: 0,
-            });
-        }
-        if let Some(name) = SCENE_COLUMNS.iter().find(|name| place(name).is_some()) {
+        let (exporter, (time, unit_ns), x, y) = if let Some(x) = place(&x) {
+            let time = with_unit("timestamp").ok_or_else(|| wrong("no column timestamp [ns]".to_string()))?;
+            (GazeExporter::MarkerMapper, time, x, need(&y)?)
+        } else if let Some(name) = SCENE_COLUMNS.iter().find(|name| place(name).is_some()) {
             return Err(wrong(format!("gaze in the scene camera's picture ({name})")));
-        }
-        let (time, unit_ns) = match with_unit("gaze_timestamp") {
-            Some(found) => found,
-            None => (need("gaze_timestamp")?, None),
+        } else {
+            let time = match with_unit("gaze_timestamp") {
+                Some(found) => found,
+                None => (need("gaze_timestamp")?, None),
+            };
+            (GazeExporter::PupilPlayer, time, need("x_norm")?, need("y_norm")?)
         };
-        let (x, y, confidence) = (need("x_norm")?, need("y_norm")?, place("confidence"));
-        if confidence.is_none() && missing == MissingConfidence::Bad {
+        let only = |of: GazeExporter, name: &str| place(name).filter(|_| exporter == of);
+        let confidence = only(GazeExporter::PupilPlayer, "confidence");
+        if exporter == GazeExporter::PupilPlayer && confidence.is_none() && missing == MissingConfidence::Bad {
             let remedy = "a table with confidence; or missing_confidence = \"good\" under [tracker], where the tracker \
                           knows none";
             return Err(lines.wrong(path, "no column confidence".to_string(), remedy));
         }
-        let (blink, recording, exporter) = (None, None, GazeExporter::PupilPlayer);
+        let [blink, recording] = ["blink id", "recording id"].map(|name| only(GazeExporter::MarkerMapper, name));
         Ok(GazeColumns { exporter, separator, time, unit_ns, x, y, confidence, blink, recording, names, row_names: 0 })
     }
 

@@ -84,7 +84,7 @@ impl PairingCodeCheck {
     /// admitted with the right code even while its address is locked, so that nobody can lock out the participant's
     /// page.
     pub fn attempt(&mut self, address: IpAddr, page: Option<&str>, typed: &str, now: Instant) -> PairingVerdict {
-        let (address, is_right) = (network_of(address), is_code(typed, &self.code));
+        let address = network_of(address);
         if self.is_known(page, typed) {
             return PairingVerdict::Right;
         }
@@ -92,7 +92,7 @@ impl PairingCodeCheck {
         if let Some(wrong) = before.filter(|wrong| now < wrong.locked_until) {
             return PairingVerdict::Locked(wrong.locked_until - now);
         }
-        if is_right {
+        if is_code(typed, &self.code) {
             self.wrong.remove(&address);
             self.known.extend(page.map(str::to_string));
             if self.known.len() > MAX_PAGES {
@@ -137,7 +137,7 @@ pub(super) fn is_code(typed: &str, code: &str) -> bool {
 }
 
 #[cfg(test)]
-mod pairing_tests {
+mod tests {
     use super::*;
 
     const HERE: IpAddr = IpAddr::V4(std::net::Ipv4Addr::new(10, 0, 0, 7));
@@ -232,11 +232,6 @@ mod pairing_tests {
         assert_eq!(desk.attempt(THERE, None, "WRONG2", later), PairingVerdict::Wrong(WAIT));
         assert_eq!(desk.attempt(THERE, None, "ABC234", later), PairingVerdict::Locked(WAIT));
     }
-}
-
-#[cfg(test)]
-mod pairing_code_tests {
-    use super::*;
 
     #[test]
     fn a_code_is_known_by_its_signs() {

@@ -414,23 +414,18 @@ fn parts(shown: &EntityData) -> Vec<Part> {
         // A curve ends at a row without a number.
         EntityData::NoValue => vec![Box::new(archetypes::Scalars::new(std::iter::empty::<f64>()))],
         EntityData::Line(SeriesStyle { name, colour }) => {
-            let mut line = archetypes::SeriesLines::update_fields();
-            if let Some(name) = name {
-                line = line.with_names([name.as_str()]).with_widths([2.0]);
-                line = line.with_interpolation_mode(InterpolationMode::StepAfter);
-            }
-            vec![Box::new(colour.iter().fold(line, |line, colour| line.with_colors([colour_of(*colour)])))]
+            let line = archetypes::SeriesLines::update_fields().with_names([name.as_str()]).with_widths([2.0]);
+            let line = line.with_interpolation_mode(InterpolationMode::StepAfter);
+            vec![Box::new(line.with_colors([colour_of(*colour)]))]
         }
         EntityData::Marks(SeriesStyle { name, colour }, shape) => {
             let shape = match shape {
                 MarkShape::Cross => MarkerShape::Cross,
                 MarkShape::Diamond => MarkerShape::Diamond,
             };
-            let mut marks = archetypes::SeriesPoints::update_fields();
-            if let Some(name) = name {
-                marks = marks.with_names([name.as_str()]).with_markers([shape]).with_marker_sizes([4.0]);
-            }
-            vec![Box::new(colour.iter().fold(marks, |marks, colour| marks.with_colors([colour_of(*colour)])))]
+            let marks = archetypes::SeriesPoints::update_fields().with_names([name.as_str()]);
+            let marks = marks.with_markers([shape]).with_marker_sizes([4.0]);
+            vec![Box::new(marks.with_colors([colour_of(*colour)]))]
         }
         EntityData::Words { level, text, colour } => {
             let level = match level {

@@ -163,21 +163,25 @@ mod tests {
     use crate::scene::EntityData;
     use tomcom_core::base::time::SessionTime;
 
+    fn open(file: &Path, server: Option<SocketAddr>) -> RerunStream {
+        let identity = StreamIdentity { id: rrd::mark(), name: "test".to_string(), facts: Vec::new() };
+        let rows = (Vec::new(), moment(0));
+        RerunStream::open(&identity, Some(file), server, rows, ShownRecording::default()).unwrap()
+    }
+
+    fn moment(step: u64) -> SceneUpdate {
+        let rows = vec![EntityUpdate::new("a", EntityData::Value(step as f64))];
+        let time = SessionTime(step * 1_000_000);
+        SceneUpdate { time, trial: time, step, rows }
+    }
+
     #[test]
     fn what_is_told_is_in_the_file_when_the_stream_is_closed_and_a_taken_port_is_no_trouble() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(RRD_NAME);
         let other = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
         let taken = other.local_addr().unwrap();
-        let identity = StreamIdentity { id: rrd::mark(), name: "test".to_string(), facts: Vec::new() };
-        let moment = |step: u64| {
-            let rows = vec![EntityUpdate::new("a", EntityData::Value(step as f64))];
-            let time = SessionTime(step * 1_000_000);
-            SceneUpdate { time, trial: time, step, rows }
-        };
-        let stream =
-            RerunStream::open(&identity, Some(&path), Some(taken), (Vec::new(), moment(0)), ShownRecording::default())
-                .unwrap();
+        let stream = open(&path, Some(taken));
         let server = stream.server.unwrap();
         assert!(server.port() != taken.port() && server.ip() == taken.ip());
         (1..1000).for_each(|step| stream.tell(vec![moment(step)]));
@@ -193,16 +197,7 @@ mod tests {
         let home = tempfile::tempdir().unwrap();
         let folder = home.path();
         let path = folder.join(RRD_NAME);
-        let identity = StreamIdentity { id: rrd::mark(), name: "test".to_string(), facts: Vec::new() };
-        let moment = |step: u64| SceneUpdate {
-            time: SessionTime(step * 1_000_000),
-            trial: SessionTime(step * 1_000_000),
-            step,
-            rows: vec![EntityUpdate::new("a", EntityData::Value(step as f64))],
-        };
-        let mut stream =
-            RerunStream::open(&identity, Some(&path), None, (Vec::new(), moment(0)), ShownRecording::default())
-                .unwrap();
+        let mut stream = open(&path, None);
         (1..100).for_each(|step| stream.tell(vec![moment(step)]));
         assert!(path.exists() && stream.give_up_file() && !path.exists());
         assert!(!stream.give_up_file(), "there is none any more");

@@ -43,20 +43,20 @@ fn identity_in(head: &[u8]) -> Option<String> {
     let mark = find(0, MARK)?;
     let end = mark + find(mark, MARK_END)? + MARK_END.len();
     let start = (0..=mark).rev().find(|&start| {
-        let before = head[..start].strip_suffix(length_prefix(end - start).as_slice());
+        let before = head[..start].strip_suffix(varint((end - start) as u64).as_slice());
         before.is_some_and(|before| before.ends_with(&[IDENTITY_TAG]))
     })?;
     String::from_utf8(head[start..end].to_vec()).ok()
 }
 
-/// A length in the encoding of Protocol Buffers: seven bits per byte, lowest bits first.
-fn length_prefix(mut length: usize) -> Vec<u8> {
+/// A number in the encoding of Protocol Buffers: seven bits per byte, lowest bits first.
+pub(crate) fn varint(mut number: u64) -> Vec<u8> {
     let mut bytes = Vec::new();
-    while length > 0x7f {
-        bytes.push((length & 0x7f) as u8 | 0x80);
-        length >>= 7;
+    while number > 0x7f {
+        bytes.push(number as u8 | 0x80);
+        number >>= 7;
     }
-    bytes.push(length as u8);
+    bytes.push(number as u8);
     bytes
 }
 
@@ -69,7 +69,7 @@ mod tests {
         for names in ["2026-03-14-P07-1", &"seed7-S001 seed7-S002 ".repeat(9)] {
             let identity = format!("{names} 2026-03-14T10:00:00Z {MARK}3{MARK_END}");
             let head =
-                [BEGINS, b"\x00\x24\x03\x00\x12", &length_prefix(identity.len()), identity.as_bytes(), b"\x1a\x08"];
+                [BEGINS, b"\x00\x24\x03\x00\x12", &varint(identity.len() as u64), identity.as_bytes(), b"\x1a\x08"];
             assert_eq!(identity_in(&head.concat()), Some(identity));
         }
         assert_eq!(identity_in(b"RRF2 of another program"), None);

@@ -8,8 +8,10 @@ use std::process::{Command, Stdio};
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
+use super::child_process::find_program;
 use super::rerun::{TRIAL_TIME, VERSION};
 use super::stream::free_port;
+use super::stream_head::varint;
 
 /// First network port at which an opened viewer may listen; if the port is in use, one of the next ports is taken.
 const PORT: u16 = 9900;
@@ -36,10 +38,7 @@ pub const REMEDY: &str = "pip install rerun-sdk==0.36.3, or cargo install rerun-
 impl ViewerAvailability {
     /// Looks for the viewer program in the folders of `PATH`.
     pub fn find() -> ViewerAvailability {
-        let name = format!("rerun{}", env::consts::EXE_SUFFIX);
-        let folders = env::var_os("PATH").unwrap_or_default();
-        let there = env::split_paths(&folders).map(|folder| folder.join(&name)).find(|path| path.is_file());
-        let Some(path) = there else { return ViewerAvailability::None };
+        let Some(path) = find_program("rerun") else { return ViewerAvailability::None };
         match version_of(&path, ANSWER) {
             Some(version) if version != VERSION => ViewerAvailability::Other(version),
             None => ViewerAvailability::None,
@@ -123,27 +122,13 @@ fn go_to(port: u16, at_ns: u64) -> io::Result<()> {
     if answer.contains("grpc-status:0") {
         Ok(())
     } else {
-        Err(io::Error::other(
-            "the Rerun viewer does not go to this \
-                                                                                time",
-        ))
+        Err(io::Error::other("the Rerun viewer does not go to this time"))
     }
 }
 
 /// A field of a Protocol Buffers message whose content has a length.
 fn field(number: u8, body: &[u8]) -> Vec<u8> {
     [&[number << 3 | 2], &varint(body.len() as u64)[..], body].concat()
-}
-
-/// A number in the encoding of Protocol Buffers: seven bits per byte, lowest bits first.
-fn varint(mut number: u64) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    while number > 0x7f {
-        bytes.push(number as u8 | 0x80);
-        number >>= 7;
-    }
-    bytes.push(number as u8);
-    bytes
 }
 
 /// Opens a web page in the user's browser, if there is a screen and a command that opens pages.

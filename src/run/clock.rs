@@ -40,7 +40,6 @@ impl SessionClock {
         SessionClock { offset, began: now, looked: now, stood: Duration::ZERO, ahead_ms }
     }
 
-    /// The present session time.
     pub fn now(&mut self) -> SessionTime {
         self.at(Instant::now())
     }

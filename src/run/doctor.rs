@@ -68,7 +68,8 @@ pub fn examine(files: &SessionSetup, out: &Path) -> DoctorReport {
     #[cfg(feature = "rerun")]
     add("for Rerun", vec![viewer()]);
     let remarks = files.study().map_or_else(Vec::new, |study| study.remarks());
-    add("for the plan", remarks.into_iter().map(plan_remark).collect());
+    let told = |remark| PreflightCheck::warning("plan", remark, "change the session file, unless it is meant so");
+    add("for the plan", remarks.into_iter().map(told).collect());
     add("for films beside recordings", films::checks(spec.video.as_ref()));
     add("for parts that this program was built without", left_out().collect());
     add("for the Lab Streaming Layer", devices::lsl(spec).into_iter().collect());
@@ -77,10 +78,6 @@ pub fn examine(files: &SessionSetup, out: &Path) -> DoctorReport {
     add("for the arm", devices::arm(spec, kitchen));
     let healthy = checks.iter().all(|one| one.check.verdict != PreflightVerdict::Failed);
     DoctorReport { healthy, checks }
-}
-
-fn plan_remark(remark: String) -> PreflightCheck {
-    PreflightCheck::new("plan", PreflightVerdict::Warning, remark, "change the session file, unless it is meant so")
 }
 
 /// The findings as text, wrapped to this width in columns.
@@ -120,12 +117,7 @@ impl DoctorReport {
 fn terminal(spec: &SessionSpec) -> Vec<PreflightCheck> {
     if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
         let remedy = "run tomcom in a terminal; without one: tomcom simulate";
-        return vec![PreflightCheck::new(
-            "terminal",
-            PreflightVerdict::Failed,
-            "input or output of tomcom is no terminal",
-            remedy,
-        )];
+        return vec![PreflightCheck::failed("terminal", "input or output of tomcom is no terminal", remedy)];
     }
     let mut checks = vec![screen_size(), colours(&spec.console)];
     let keys = match supports_keyboard_enhancement() {
@@ -166,12 +158,8 @@ fn screen_size() -> PreflightCheck {
         (_, true) => PreflightVerdict::Warning,
         _ => PreflightVerdict::Failed,
     };
-    PreflightCheck::new(
-        "terminal size",
-        verdict,
-        format!("{columns}x{rows}"),
-        "use a larger window or a smaller font: 120x40 characters, at least 80x24",
-    )
+    let remedy = "use a larger window or a smaller font: 120x40 characters, at least 80x24";
+    PreflightCheck::new("terminal size", verdict, format!("{columns}x{rows}"), remedy)
 }
 
 fn colours(spec: &ConsoleSpec) -> PreflightCheck {
@@ -225,15 +213,14 @@ fn folder(out: &Path) -> PreflightCheck {
     if is_own {
         let _ = fs::remove_dir_all(&probe);
     }
-    let remedy = "give a folder that can be written to with --out";
     match tried {
         Ok(took) => {
             let found = format!("{place} can be written to (64 KiB were on the disk after {} ms)", took.as_millis());
-            PreflightCheck::new("recordings", PreflightVerdict::Ok, found, remedy)
+            PreflightCheck::ok("recordings", found)
         }
         Err(reason) => {
             let found = format!("{place} cannot be written to: {reason}");
-            PreflightCheck::new("recordings", PreflightVerdict::Failed, found, remedy)
+            PreflightCheck::failed("recordings", found, "give a folder that can be written to with --out")
         }
     }
 }
@@ -265,7 +252,7 @@ fn wall_clock() -> PreflightCheck {
 fn left_out() -> impl Iterator<Item = PreflightCheck> {
     Feature::ALL.into_iter().filter_map(|feature| {
         let missing = feature.require().err()?;
-        Some(PreflightCheck::new("build", PreflightVerdict::Warning, missing.to_string(), missing.remedy()))
+        Some(PreflightCheck::warning("build", missing.to_string(), missing.remedy()))
     })
 }
 
@@ -274,29 +261,24 @@ fn left_out() -> impl Iterator<Item = PreflightCheck> {
 #[cfg(feature = "rerun")]
 fn viewer() -> PreflightCheck {
     use tomcom_devices::viewer::{REMEDY, ViewerAvailability};
-    let (verdict, found, remedy) = match ViewerAvailability::find() {
+    match ViewerAvailability::find() {
         ViewerAvailability::Ready(path) => {
-            (PreflightVerdict::Ok, format!("{} {}", path.display(), tomcom_devices::rerun::VERSION), "")
+            PreflightCheck::ok("viewer", format!("{} {}", path.display(), tomcom_devices::rerun::VERSION))
         }
-        ViewerAvailability::NoScreen => (
-            PreflightVerdict::Ok,
-            "a Rerun viewer is installed, but there is no screen: tomcom review serves the \
-                                    viewer for a browser"
-                .to_string(),
-            "",
-        ),
+        ViewerAvailability::NoScreen => {
+            let found =
+                "a Rerun viewer is installed, but there is no screen: tomcom review serves the viewer for a browser";
+            PreflightCheck::ok("viewer", found)
+        }
         ViewerAvailability::Other(version) => {
-            (PreflightVerdict::Warning, format!("the Rerun viewer {version} is installed: another version"), REMEDY)
+            let found = format!("the Rerun viewer {version} is installed: another version");
+            PreflightCheck::warning("viewer", found, REMEDY)
         }
-        ViewerAvailability::None => (
-            PreflightVerdict::Warning,
-            "no Rerun viewer in PATH: tomcom review serves one for a \
-                                         browser"
-                .to_string(),
-            REMEDY,
-        ),
-    };
-    PreflightCheck::new("viewer", verdict, found, remedy)
+        ViewerAvailability::None => {
+            let found = "no Rerun viewer in PATH: tomcom review serves one for a browser";
+            PreflightCheck::warning("viewer", found, REMEDY)
+        }
+    }
 }
 
 /// Checks whether the computer wakes sleeping programs in time: a late wake-up delays the time stamps of presses and
@@ -309,10 +291,6 @@ fn timer() -> PreflightCheck {
     });
     let late_ms = late.max().unwrap_or_default().as_secs_f64() * 1000.0;
     let verdict = if late_ms < 20.0 { PreflightVerdict::Ok } else { PreflightVerdict::Warning };
-    PreflightCheck::new(
-        "timer",
-        verdict,
-        format!("a timer wakes the program at most {late_ms:.1} ms late"),
-        "close other programs that use the processor",
-    )
+    let found = format!("a timer wakes the program at most {late_ms:.1} ms late");
+    PreflightCheck::new("timer", verdict, found, "close other programs that use the processor")
 }

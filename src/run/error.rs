@@ -19,64 +19,37 @@ pub struct TerminalError(pub io::Error);
 /// Error of a live session: a device, a file or the recording fails.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum LiveError {
-    /// The wizard's console cannot be opened.
     #[error(transparent)]
     #[diagnostic(help("run it in a terminal; without one: tomcom simulate sessions/default.toml"))]
     Terminal(#[from] TerminalError),
-    /// A key binding of the console is invalid.
     #[error(transparent)]
     #[diagnostic(help("{}", .0.remedy))]
     Keys(#[from] KeyError),
-    /// A file cannot be read.
     #[error(transparent)]
     #[diagnostic(transparent)]
     File(#[from] FileError),
-    /// The port for gaze samples cannot be opened.
     #[error("the port for gaze samples at {at} cannot be opened: {reason}")]
     #[diagnostic(help("set another gaze_port in the session file, or an address of this computer as gaze_listen"))]
-    Gaze {
-        /// Address and port for gaze that cannot be opened.
-        at: SocketAddr,
-        /// Why the operating system could not open the port for gaze.
-        reason: io::Error,
-    },
-    /// The Lab Streaming Layer cannot be used.
+    Gaze { at: SocketAddr, reason: io::Error },
     #[error(transparent)]
     #[diagnostic(help("{}", .0.remedy()))]
     Lsl(#[from] LslError),
-    /// The participant's display cannot be served.
     #[error("the address {address}, port {port}, for the participant's display cannot be opened: {reason}")]
     #[diagnostic(help("set another port in the session file (port under [display]), or an address of this computer"))]
-    Display {
-        /// Network address of the display's server.
-        address: IpAddr,
-        /// Network port of the display's server.
-        port: u16,
-        /// Why the operating system could not open the server's address.
-        reason: io::Error,
-    },
-    /// The driver of a real arm cannot be started.
+    Display { address: IpAddr, port: u16, reason: io::Error },
     #[error("the driver of the arm cannot be started: {0}")]
     #[diagnostic(help("end other programs, and start tomcom again"))]
     Arm(io::Error),
-    /// The observers' page cannot be served.
     #[error("the address {at} for observers cannot be opened: {reason}")]
     #[diagnostic(help("give another port, or an address of this computer, as in --observe=127.0.0.1:50024"))]
-    Observers {
-        /// Address and port of the observers' server.
-        at: SocketAddr,
-        /// Why the operating system could not open the server's address.
-        reason: io::Error,
-    },
+    Observers { at: SocketAddr, reason: io::Error },
     /// The display tags do not fit on the display, so that the eye tracker could not find the display.
     #[error("the eye tracker has no surface to look for: found {}", .0.found)]
     #[diagnostic(help("{}; or set a surface of your own, with its corners, in [tracker]", .0.remedy))]
     Tags(TagError),
-    /// The recording cannot be written.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Recording(#[from] RecordingWriteError),
-    /// The recording cannot be continued.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Resume(#[from] ResumeError),
@@ -93,39 +66,24 @@ pub enum LiveError {
         "take the correction back: tomcom correct {} --undo; or correct it to a code of the plan: --code CODE --reason …",
         recording.display()
     ))]
-    Corrected {
-        /// What was found, in words.
-        found: String,
-        /// Folder of the corrected recording.
-        recording: PathBuf,
-    },
+    Corrected { found: String, recording: PathBuf },
 }
 
 /// Error while a recording is shown at the console.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum ReviewError {
-    /// The console cannot be opened.
     #[error(transparent)]
     #[diagnostic(help("run it in a terminal; `tomcom replay RECORDING` tells a recording in words through a pipe"))]
     Terminal(#[from] TerminalError),
-    /// A file cannot be read.
     #[error(transparent)]
     #[diagnostic(transparent)]
     File(#[from] FileError),
-    /// The consensus of two raters cannot be written.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Recording(#[from] RecordingWriteError),
-    /// The record of a wizard's training cannot be written.
     #[error("{}: the training cannot be recorded: {reason}", path.display())]
     #[diagnostic(help("give a folder that can be written to with --out"))]
-    Training {
-        /// Path of the training record.
-        path: PathBuf,
-        /// Why the operating system could not write the training record.
-        reason: io::Error,
-    },
-    /// A key binding in the recording's key file is invalid.
+    Training { path: PathBuf, reason: io::Error },
     #[error("the header of the recording: {0}")]
     #[diagnostic(help("{}", .0.remedy))]
     Keys(#[from] KeyError),

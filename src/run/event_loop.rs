@@ -10,8 +10,7 @@ use tokio::time::{Instant, Interval, MissedTickBehavior, interval, sleep_until};
 use super::assistant_link::AssistantNews;
 use super::error::TerminalError;
 use super::operator_station::{ArmNews, OperatorStation, PageInput, Remark};
-use crate::console::lists::RecordingPicker;
-use crate::console::lists::StartPrompt;
+use crate::console::lists::{RecordingPicker, StartPrompt};
 use crate::console::view::theme::Theme;
 use crate::console::{ConsoleMessage, ConsoleModel};
 use crate::run::terminal::TerminalScreen;
@@ -160,6 +159,12 @@ pub(super) async fn run<S: ConsoleShell>(
         }
     }
     Ok(None)
+}
+
+/// Runs a future in a tokio runtime, which termination signals and sockets need.
+pub(super) fn in_runtime<T, E: From<TerminalError>>(work: impl Future<Output = Result<T, E>>) -> Result<T, E> {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(TerminalError)?;
+    runtime.block_on(work)
 }
 
 /// Deadlines of the event loop's periodic events.

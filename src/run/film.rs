@@ -270,21 +270,22 @@ fn check_by_hand(
     if start_s < length_s && end_s > 0.0 {
         return Ok(());
     }
-    Err(FilmError::NotAligned {
-        film: film.to_path_buf(),
-        found: format!(
-            "a film of {length_s:.1} s, and a trial from {start_s:.1} s to {end_s:.1} s of it: nothing of the trial is in the film"
-        ),
-        remedy: "--at with the time in the film at which the trial starts, or --offset with that at which the session begins"
-            .to_string(),
-    })
+    let found = format!(
+        "a film of {length_s:.1} s, and a trial from {start_s:.1} s to {end_s:.1} s of it: nothing of the trial is in the film"
+    );
+    let remedy =
+        "--at with the time in the film at which the trial starts, or --offset with that at which the session begins";
+    Err(FilmError::NotAligned { film: film.to_path_buf(), found, remedy: remedy.to_string() })
+}
+
+fn set_clock(attached: &mut AttachedFilm, by: FilmAlignmentSource, offset_s: f64, drift: f64, residual_s: f64) {
+    (attached.by, attached.offset_s) = (by, rounded(offset_s, 1e4));
+    attached.drift_ppm = rounded(drift * 1e6, 10.0);
+    attached.residual_ms = Some(rounded(residual_s * 1e3, 10.0));
 }
 
 fn set_by_flashes(attached: &mut AttachedFilm, found: &FilmAlignment) {
-    attached.by = FilmAlignmentSource::Flashes;
-    attached.offset_s = rounded(found.offset_s, 1e4);
-    attached.drift_ppm = rounded(found.drift * 1e6, 10.0);
-    attached.residual_ms = Some(rounded(found.residual_s * 1e3, 10.0));
+    set_clock(attached, FilmAlignmentSource::Flashes, found.offset_s, found.drift, found.residual_s);
     attached.flashes = Some(found.flashes as u64);
 }
 
@@ -331,10 +332,7 @@ fn align_by_pupil(
         found: refusal.to_string(),
         remedy: format!("the film of this trial with its time stamps, as Capture recorded them, {BY_HAND}"),
     })?;
-    attached.by = FilmAlignmentSource::PupilClock;
-    attached.offset_s = rounded(found.offset_s, 1e4);
-    attached.drift_ppm = rounded(found.drift * 1e6, 10.0);
-    attached.residual_ms = Some(rounded(found.residual_s * 1e3, 10.0));
+    set_clock(attached, FilmAlignmentSource::PupilClock, found.offset_s, found.drift, found.residual_s);
     set_length(attached, times_s.last().copied().unwrap_or(0.0), found.frame_s);
     Ok(())
 }
@@ -411,10 +409,8 @@ fn convert(film: &Path, folder: &Path) -> Result<(PathBuf, f64), FilmError> {
 fn first_picture_s(film: &Path) -> Result<f64, FilmError> {
     let mut first = None;
     decode_some(film, Some(1), |time_s, _| first = first.or(Some(time_s)))?;
-    first.ok_or_else(|| FilmError::Undecodable {
-        film: film.to_path_buf(),
-        reason: "there are no pictures in it".to_string(),
-    })
+    let reason = || "there are no pictures in it".to_string();
+    first.ok_or_else(|| FilmError::Undecodable { film: film.to_path_buf(), reason: reason() })
 }
 
 /// A film's path, as ffmpeg takes it for nothing else.

@@ -11,7 +11,6 @@ use tomcom_study::analysis::trial_summary::TrialSummary;
 /// How the wizard left a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LeavingReason {
-    /// The wizard ended the program.
     Quit,
     Next,
     /// The wizard repeats the trial in a new recording.
@@ -21,7 +20,6 @@ pub enum LeavingReason {
 /// How far the participant came in a tutorial that the recording ended with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TutorialProgress {
-    /// Number of steps that the participant did.
     pub done: u64,
     pub steps: u64,
     pub presses: u64,
@@ -55,7 +53,6 @@ impl TutorialProgress {
 pub struct LiveOutcome {
     /// `None` if nothing happened, so that the recording was removed.
     pub folder: Option<PathBuf>,
-    /// How the wizard left the recording.
     pub leaving: LeavingReason,
     pub figures: TrialSummary,
     /// How far the participant came, if the session was left in a tutorial.

@@ -9,6 +9,7 @@ use std::time::Duration;
 use tempfile::TempPath;
 
 use crate::run::terminal::asked_to_end;
+use tomcom_core::base::text::printable;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::measures::raters::CodableErrors;
 use tomcom_core::mind::dirichlet::DirichletBelief;
@@ -22,7 +23,7 @@ use tomcom_session::files::file_error::{FileError, FileResult, read_bytes};
 use tomcom_session::files::overwrite;
 use tomcom_session::files::replace_file::Replacement;
 use tomcom_session::history::error_reasons::ExplainedError;
-use tomcom_session::history::{signal_words, wording};
+use tomcom_session::history::{event_words, signal_words, wording};
 use tomcom_session::log::video_file::{self, AttachedFilm};
 use tomcom_session::log::{LOG_NAME, LogReader, RecordingLock, RecordingWriteError, rater_codes};
 use tomcom_session::replay::{RecordingReplay, ReplayLandmark};
@@ -402,7 +403,7 @@ pub fn unshown_films(recordings: &[PathBuf]) -> FileResult<Vec<String>> {
     Ok(unshown)
 }
 
-/// An error, a signal or a false belief of a recording, as the viewer shows it.
+/// An error, a signal, a note or a false belief of a recording, as the viewer shows it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RecordedLandmark {
     pub words: String,
@@ -440,8 +441,14 @@ pub fn landmarks(recording: &Path, kinds: &[ReplayLandmark]) -> FileResult<Vec<R
         }
     }
     if kinds.contains(&ReplayLandmark::Signal) {
-        for ((number, shown), told) in (1..).zip(&follower.signals.shown).zip(signal_words::told(follower)) {
-            add(shown.time, shown.ended, format!("signal {number}: {told}"));
+        for (nth, shown) in follower.signals.shown.iter().enumerate() {
+            add(shown.time, shown.ended, format!("signal {}: {}", nth + 1, signal_words::told(follower, nth)));
+        }
+    }
+    if kinds.contains(&ReplayLandmark::Marker) {
+        let notes = session.timeline.iter().filter_map(|entry| Some((entry.time, event_words::note(&entry.what)?)));
+        for (number, (time, note)) in (1..).zip(notes) {
+            add(time, Some(time), format!("note {number}: {}", printable(&note)));
         }
     }
     if kinds.contains(&ReplayLandmark::FalseBelief) {

@@ -10,6 +10,7 @@ use tomcom_core::kitchen::Kitchen;
 use tomcom_session::LogHeader;
 use tomcom_session::files::SessionSetup;
 use tomcom_session::files::file_error::FileResult;
+use tomcom_session::files::near_path::SESSIONS;
 use tomcom_session::person_code;
 use tomcom_session::plan::PlanSpec;
 use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, SettingError};
@@ -19,21 +20,12 @@ use tomcom_session::watcher::SenderComparisonSettings;
 #[derive(Clone, Debug)]
 pub enum SessionStart {
     /// Repetition of a trial in a new recording in the folder `out`.
-    Again {
-        /// Header of the repetition's recording.
-        header: Box<LogHeader>,
-        /// Kitchen that the repetition's header describes.
-        kitchen: Arc<Kitchen>,
-        /// Folder in which the recording's folder is created.
-        out: PathBuf,
-    },
+    Again { header: Box<LogHeader>, kitchen: Arc<Kitchen>, out: PathBuf },
     /// A new session with these settings, recorded in `out`; `trial` distinguishes sessions with the same seed.
     New {
-        /// Settings of the session with the files that they name.
         files: Box<SessionSetup>,
         /// Index of the trial among trials with the same seed.
         trial: u64,
-        /// Folder in which the recording's folder is created.
         out: PathBuf,
     },
     /// Continuation of a recording that was cut off.
@@ -51,7 +43,6 @@ pub struct SeriesRequest {
     pub out: PathBuf,
     /// Kind of participant, if the command line names it.
     pub kind: Option<ParticipantKind>,
-    /// Comparison of wizard and assistants, if the console shows it.
     pub compare: Option<SenderComparisonSettings>,
     /// Address at which observers can watch the wizard's screen.
     pub observe: Option<SocketAddr>,
@@ -60,11 +51,8 @@ pub struct SeriesRequest {
 /// Session settings given on the command line; `None` keeps the session file's value.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SettingOverrides {
-    /// Kind of participant: a person (and by which input) or a simulation.
     pub participant: Option<ParticipantKind>,
-    /// Kind of the robot's arm: timed or with simulated physics.
     pub arm: Option<ArmKind>,
-    /// Source of the participant's gaze samples.
     pub gaze: Option<GazeSource>,
     /// Network address of the server of the participant's display.
     pub listen: Option<IpAddr>,
@@ -72,11 +60,8 @@ pub struct SettingOverrides {
     pub gaze_file: Option<PathBuf>,
     /// Time in the gaze file at which the trial starts, in seconds after the first sample.
     pub gaze_start_s: Option<f64>,
-    /// Condition of the trial: who may send signals.
     pub condition: Option<Condition>,
-    /// The assistant's communication concept.
     pub concept: Option<ConceptSpec>,
-    /// Seed of all random numbers.
     pub seed: Option<u64>,
     /// The participant's pseudonymous code, such as P01.
     pub code: Option<String>,
@@ -153,7 +138,7 @@ pub fn participant_of_plan(plan: &PlanSpec, code: Option<&str>) -> Result<usize,
 /// The session of commands that are given none.
 pub const DEFAULT_SESSION: &str = "sessions/default.toml";
 /// Folder of recordings, where a command line names none.
-pub const DEFAULT_OUT: &str = "sessions";
+pub const DEFAULT_OUT: &str = SESSIONS;
 
 /// Reads the given session file, or else that of the default session.
 ///

@@ -8,11 +8,12 @@ use serde::Serialize;
 use super::error::LiveError;
 use super::series::{operate_command, recordings_of, slot_name, stands};
 use crate::console::text_columns::{beside, width};
-use tomcom_core::base::text::PathText;
-use tomcom_core::base::text::count;
+use tomcom_core::base::text::{PathText, count};
 use tomcom_session::files::file_error::{FileError, FileResult, place_of, read_text};
-use tomcom_session::files::{KitchenWithSources, SessionSetup};
-use tomcom_session::plan::{ParticipantProgress, RecordingOutcome, Study, TrialAttempt, listed, orders};
+use tomcom_session::files::{KitchenWithSources, SessionSetup, in_language};
+use tomcom_session::plan::{
+    ParticipantProgress, PlanDifference, RecordingOutcome, Study, TrialAttempt, listed, orders,
+};
 use tomcom_session::study_arm::StudyArm;
 use tomcom_study::files::pool_file;
 use tomcom_study::frozen_plan::FrozenPlan;
@@ -22,15 +23,12 @@ use tomcom_study::frozen_plan::FrozenPlan;
 pub struct StudyProgress {
     /// Path of the session file with the plan.
     pub session: PathText,
-    /// Folder of the recordings.
     pub recordings: PathText,
-    /// Name of the study plan.
     pub plan: String,
     /// Checksum of the plan and its settings.
     pub digest: String,
     /// Seed of counterbalancing, and of the trials' random numbers.
     pub seed: u64,
-    /// Number of participants in the plan.
     pub planned: usize,
     /// Number of participants who have completed all their recordings.
     pub finished: usize,
@@ -38,7 +36,6 @@ pub struct StudyProgress {
     pub simulated: u64,
     /// What the plan leaves out without being wrong, and which recordings do not count, in words.
     pub remarks: Vec<String>,
-    /// Progress of each participant.
     pub participants: Vec<ParticipantProgress>,
 }
 
@@ -79,9 +76,10 @@ fn remarks(study: &Study) -> Vec<String> {
 /// Why recordings that somebody made may not show in the progress.
 fn uncounted(counted: usize, simulated: u64, session: &Path, out: &Path) -> Option<String> {
     let operate = operate_command(session, out, "CODE", None);
+    let missing = if out.exists() { "" } else { ", which does not exist" };
     let out = out.display();
     match (counted, simulated) {
-        (0, 0) => Some(format!("no recording of the plan is in {out}; --out DIR looks in another folder")),
+        (0, 0) => Some(format!("no recording of the plan is in {out}{missing}; --out DIR looks in another folder")),
         (_, 0) => None,
         (_, some) => Some(format!(
             "not counted: {}, since tomcom simulate fills no plan; {}",
@@ -97,13 +95,11 @@ fn uncounted(counted: usize, simulated: u64, session: &Path, out: &Path) -> Opti
 /// Result of freezing (preregistering) a study plan: the output of `tomcom plan SESSION --freeze FILE`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FrozenPlanSummary {
-    /// Name of the study plan.
     pub plan: String,
     /// SHA-256 digest of the frozen plan.
     pub digest: String,
     /// Number of recordings of the plan that existed already.
     pub recordings_before: u64,
-    /// Path of the frozen plan's file.
     pub file: PathText,
 }
 
@@ -155,17 +151,21 @@ pub fn check_frozen(session: &Path, files: &SessionSetup, frozen: &Path) -> File
     if study.digest == plan.plan_digest {
         return Ok(());
     }
+    let too = |others: &[PlanDifference]| match others {
+        [] => String::new(),
+        others => format!("; changed, too: {}", listed(others)),
+    };
     let right = |value: &str| format!("{value}, as it was frozen in {}", frozen.display());
     let changed = plan.differs_from(&study);
     if let [first, others @ ..] = &changed[..] {
         let text = read_text(session)?;
         let [before, found] = first.settings();
-        let others = if others.is_empty() { String::new() } else { format!("; changed, too: {}", listed(others)) };
         let place = place_of(&text, &first.path, first.nth);
-        return Err(FileError::at(session, &text, place, found, right(&before) + &others));
+        return Err(FileError::at(session, &text, place, found, right(&before) + &too(others)));
     }
     let KitchenWithSources { layout, recipes, .. } = &files.kitchen;
-    let layout_path = session.parent().unwrap_or(Path::new(".")).join(&layout.path);
+    let folder = session.parent().unwrap_or(Path::new("."));
+    let layout_path = folder.join(&layout.path);
     let recipes_path = layout_path.parent().unwrap_or(Path::new(".")).join(&recipes.path);
     for (path, now, before) in [
         (layout_path, &layout.text, &plan.settings["layout"]),
@@ -181,7 +181,19 @@ pub fn check_frozen(session: &Path, files: &SessionSetup, frozen: &Path) -> File
             return Err(FileError::at(&path, now, Some(start..start + found.len()), found.to_string(), right(wanted)));
         }
     }
-    Err(wrong("another text of what participants are told, taught or asked"))
+    let texts = plan.texts_differ_from(&study);
+    let Some((first, others)) = texts.split_first() else {
+        return Err(wrong("another text of what participants are told, taught or asked"));
+    };
+    let mut asked = study.plan.questionnaire.iter().zip(&study.questionnaires);
+    let of_file = asked.find(|(_, asked)| first.path.starts_with(&format!("questionnaire {}.", asked.name)));
+    let file = of_file.map(|(asked, _)| &asked.file).or(study.plan.tutorial.as_ref());
+    let path = file.map_or(session.to_path_buf(), |file| in_language(folder.join(file), study.session.display.code()));
+    let text = read_text(&path)?;
+    let now = first.values[1].as_ref().and_then(|now| now.as_str()).filter(|now| !now.is_empty());
+    let place = now.and_then(|now| Some(text.find(now)?..text.find(now)? + now.len()));
+    let [before, _] = first.settings();
+    Err(FileError::at(&path, &text, place, first.to_string(), right(&before) + &too(others)))
 }
 
 /// Progress of the study as text for a terminal of this width. Where the conditions leave little room, the letters of the
@@ -216,7 +228,7 @@ pub fn describe(figures: &StudyProgress, columns: u16) -> String {
     let is_wide = figures.participants.iter().any(|one| 2 * width(&whole(one)) > columns);
     let one = |progress: &ParticipantProgress| {
         let first = if is_wide { group(progress) } else { whole(progress) };
-        let operate = operate_command(&figures.session, &figures.recordings, &progress.code, None);
+        let operate = operate_command(&figures.session, &figures.recordings, &progress.code, progress.kind);
         let stands = stands(progress, &operate);
         let stands = stands.split_once(": ").map_or(stands.as_str(), |(_, stands)| stands);
         let attempts = attempts(progress);

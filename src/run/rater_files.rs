@@ -3,8 +3,7 @@
 use super::error::ReviewError;
 use super::seekable_replay::SeekableReplay;
 use crate::console::coding::{CodingRaters, RaterSession};
-use tomcom_core::measures::raters::{CodableErrors, RaterCodes};
-use tomcom_core::measures::raters::{RaterConsensus, unsettled};
+use tomcom_core::measures::raters::{CodableErrors, RaterCodes, RaterConsensus, unsettled};
 use tomcom_session::error_list::ListedError;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::log::{RecordingWriteError, consensus_file, rater_codes};

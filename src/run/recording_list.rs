@@ -5,11 +5,11 @@ use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 use std::time::Duration;
 
-use super::error::{ReviewError, TerminalError};
+use super::error::ReviewError;
 use super::event_loop::{self, ConsoleShell, FRAME, LoopEvent, ShellDeadlines, ShellView};
 use super::operator_station::OperatorStation;
 use crate::console::ConsoleMessage;
-use crate::console::lists::{RecordingPicker, RecordingReply};
+use crate::console::lists::{ListChoice, RecordingPicker};
 use crate::console::mouse::ClickAction;
 use crate::console::view::recordings_page::recording_targets;
 use crate::console::view::theme::Theme;
@@ -179,14 +179,13 @@ pub fn pick(folder: &Path, does: &'static str) -> Result<Option<PathBuf>, Review
     let folder = folder.to_path_buf();
     // Nobody waits for the list of a person who has left.
     thread::spawn(move || drop(tell.send(newest_first(&folder))));
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(TerminalError)?;
-    runtime.block_on(async {
+    event_loop::in_runtime(async {
         let mut station = OperatorStation::without_devices(&ConsoleSpec::default())?;
         let mut shell = OpenPicker { picker, read, paths: Vec::new(), theme: station.theme, dirty: true };
         let chosen = event_loop::run(&mut shell, &mut station).await?;
         Ok(match chosen {
-            Some(RecordingReply::Chosen(index)) => shell.paths.into_iter().nth(index),
-            Some(RecordingReply::Leave) | None => None,
+            Some(ListChoice::Chosen(index)) => shell.paths.into_iter().nth(index),
+            Some(ListChoice::Leave) | None => None,
         })
     })
 }
@@ -213,7 +212,7 @@ struct OpenPicker {
 }
 
 impl OpenPicker {
-    fn click(&mut self, cell: (u16, u16)) -> Option<RecordingReply> {
+    fn click(&mut self, cell: (u16, u16)) -> Option<ListChoice> {
         let size = TerminalScreen::size().ok()?;
         let targets = recording_targets(&self.picker, self.theme, size);
         let target = targets.iter().rev().find(|target| target.cells.contains(cell.into()))?;
@@ -226,14 +225,14 @@ impl OpenPicker {
 }
 
 impl ConsoleShell for OpenPicker {
-    type Outcome = RecordingReply;
+    type Outcome = ListChoice;
     type Error = ReviewError;
 
     fn deadlines(&mut self) -> ShellDeadlines {
         ShellDeadlines { frame_after: if self.dirty { FRAME } else { REDRAW }, ..ShellDeadlines::default() }
     }
 
-    fn take(&mut self, event: LoopEvent) -> Result<Option<RecordingReply>, ReviewError> {
+    fn take(&mut self, event: LoopEvent) -> Result<Option<ListChoice>, ReviewError> {
         if let Ok(read) = self.read.try_recv() {
             (self.picker.rows, self.paths) = read?;
             (self.picker.reading, self.dirty) = (None, true);

@@ -13,9 +13,7 @@ use super::operator_station::OperatorStation;
 use super::rater_files;
 use super::seekable_replay::SeekableReplay;
 use crate::console::coding::RaterSession;
-use crate::console::console_model::NoticeLevel;
-use crate::console::console_model::SenderComparisonView;
-use crate::console::console_model::{Playback, ReplayAction, SPEEDS};
+use crate::console::console_model::{NoticeLevel, Playback, ReplayAction, SPEEDS, SenderComparisonView};
 use crate::console::key_action::KeyAction;
 use crate::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, update};
 use crate::run::key_file::key_map;
@@ -78,8 +76,7 @@ fn at_station(
     compare: Option<&SenderComparisonSettings>,
     coding: Option<RaterSession>,
 ) -> Result<Review, ReviewError> {
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(TerminalError)?;
-    runtime.block_on(async {
+    event_loop::in_runtime(async {
         let mut station = OperatorStation::without_devices(&film.session.spec.console)?;
         let mut review = Review::open(film, &station, recording, follow, compare, coding)?;
         event_loop::run(&mut review, &mut station).await?;
@@ -260,7 +257,10 @@ impl Review {
         // Where two marks meet, the later one of this list is seen.
         let all = [ReplayLandmark::FalseBelief, ReplayLandmark::Error, ReplayLandmark::Signal];
         let shown = if self.model.coding.is_some() { &[ReplayLandmark::Error][..] } else { &all[..] };
-        let times = |&what: &ReplayLandmark| self.film.landmarks(what).into_iter().map(move |time| (time, what));
+        let session = self.film.replay.session();
+        let times = |&what: &ReplayLandmark| {
+            self.film.landmarks(what).into_iter().map(move |time| (session.trial_clock_at(time), what))
+        };
         let marks: Vec<(SessionTime, ReplayLandmark)> = shown.iter().flat_map(times).collect();
         self.playback(|playback| playback.marks = marks.into());
     }
@@ -379,7 +379,7 @@ impl ConsoleShell for Review {
         let known = self.model.errors.len();
         self.model.errors.extend_from_slice(&self.film.errors[known..]);
         self.film.show_beliefs(&mut self.model.belief);
-        let (length, events) = self.film.length();
+        let (_, events) = self.film.length();
         let (event, cut) = (self.film.position, self.film.is_cut());
         let trial_length = self.film.trial_length();
         // Where one of the films has the moment, nothing is missing.
@@ -388,7 +388,7 @@ impl ConsoleShell for Review {
         let outside_film = first.and_then(|player| player.film.outside(self.now));
         self.mark();
         self.playback(|playback| {
-            *playback = Playback { length, trial_length, event, events, cut, outside_film, ..playback.clone() };
+            *playback = Playback { trial_length, event, events, cut, outside_film, ..playback.clone() };
         });
     }
 

@@ -19,7 +19,7 @@ use tomcom_session::log::LogPlace;
 use tomcom_session::replay::RecordingReplay;
 use tomcom_session::replay::ReplayLandmark;
 use tomcom_session::settings::WizardVisibility;
-use tomcom_session::{Event, Session, TimelineEntry, TimelineEvent, TimestampedEvent, TrialPhase, apply};
+use tomcom_session::{Event, Session, TimelineEntry, TimestampedEvent, TrialPhase, apply};
 use tomcom_study::analysis::recording_summary::ExclusionStatus;
 use tomcom_study::standing::exclusion_status;
 
@@ -31,9 +31,10 @@ const MOST_SNAPSHOTS: usize = 256;
 /// Event without effect that replaces hidden events in a replay for raters, so that sequence numbers stay.
 const HIDDEN: Event = Event::ClockJumped { by_ms: 0 };
 
-/// Whether the replay stops at this event when it is moved step by step.
+/// Whether the replay stops at this event when it is moved step by step. The estimate from before a press is recorded after
+/// the press: beside its words the screen would show the one after it.
 fn is_step(event: &Event) -> bool {
-    !event.is_sample() && *event != HIDDEN
+    !event.is_sample() && !matches!(event, Event::BeliefEstimated(_)) && *event != HIDDEN
 }
 
 /// Events of a recording that are read again together; all of them are in one file.
@@ -364,10 +365,10 @@ impl SeekableReplay {
         self.steps.get(next).map_or(self.read_events(), |step| step.index) + 1
     }
 
-    /// Position after the previous event that is neither a gaze or arm sample nor hidden from raters.
+    /// The last position before the present one that is after such an event.
     pub fn last_step(&self) -> usize {
-        let last = self.steps.partition_point(|step| step.index < self.position);
-        last.checked_sub(2).map_or(0, |before| self.steps[before].index + 1)
+        let number = self.steps.partition_point(|step| step.index + 1 < self.position);
+        number.checked_sub(1).map_or(0, |last| self.steps[last].index + 1)
     }
 
     /// The false beliefs of the estimate at which a replay stops: those that last, as far as the recording was read.
@@ -387,13 +388,15 @@ impl SeekableReplay {
         }
     }
 
-    /// Position after all events at the time of the next or previous landmark of this kind. `here`: one at the present time
-    /// is found, too.
+    /// Position after all events at the time of the next or previous landmark of this kind. `here`: one at the present
+    /// position is found, too.
     pub fn landmark(&mut self, what: ReplayLandmark, forward: bool, here: bool) -> Option<usize> {
         let (now, times) = (self.time(), self.landmarks(what));
+        // Before the last event of this time its landmarks are ahead.
+        let is_ahead = self.position < self.until(now);
         let found = match forward {
-            true => times.into_iter().find(|&time| time > now || here && time == now),
-            false => times.into_iter().rev().find(|&time| time < now || here && time == now),
+            true => times.into_iter().find(|&time| time > now || time == now && (here || is_ahead)),
+            false => times.into_iter().rev().find(|&time| time < now || time == now && here && !is_ahead),
         };
         found.map(|time| self.until(time))
     }
@@ -423,10 +426,6 @@ impl SeekableReplay {
     /// What the landmark of this kind is at which the replay stands.
     fn told(&self, what: ReplayLandmark) -> Option<String> {
         let (session, now) = (self.replay.session(), self.time());
-        // The whole recording knows the words of a note that the wizard typed later.
-        let until = session.timeline.partition_point(|entry| entry.time <= now);
-        let mut entries =
-            session.timeline[..until].iter().rev().take_while(|entry| entry.time == now).map(|entry| &entry.what);
         match what {
             ReplayLandmark::Error => {
                 let error = self.errors.iter().find(|error| error.time == now)?;
@@ -438,14 +437,14 @@ impl SeekableReplay {
             ReplayLandmark::Signal => {
                 let follower = &self.replay.follower;
                 let nth = follower.signals.shown.iter().position(|shown| shown.time == now)?;
-                signal_words::told(follower).into_iter().nth(nth)
+                Some(signal_words::told(follower, nth))
             }
-            ReplayLandmark::Marker => entries.find_map(|entry| match entry {
-                TimelineEvent::Noted(Event::Marker { note, observer }) => {
-                    Some(event_words::noted_words(note, observer.as_deref()))
-                }
-                _ => None,
-            }),
+            // The whole recording knows the words of a note that the wizard typed later.
+            ReplayLandmark::Marker => {
+                let from = session.timeline.partition_point(|entry| entry.time < now);
+                let those = session.timeline[from..].iter().take_while(|entry| entry.time == now);
+                those.filter_map(|entry| event_words::note(&entry.what)).last()
+            }
             ReplayLandmark::FalseBelief => {
                 let told = self.false_beliefs().filter(|one| one.began == now).map(|one| one.whole(session));
                 Some(told.collect::<Vec<_>>().join("; "))

@@ -4,7 +4,8 @@
 use std::net::SocketAddr;
 use std::path::Path;
 
-use super::error::{LiveError, TerminalError};
+use super::error::LiveError;
+use super::event_loop::in_runtime;
 use super::leaving::{LeavingReason, LiveOutcome};
 use super::live;
 use super::operator_station::OperatorStation;
@@ -81,12 +82,6 @@ fn continued_lock(beginning: &SessionStart) -> Result<Option<RecordingLock>, Liv
     Ok(Some(RecordingLock::take_for_participant(beside, &step.plan, &log.header.session.participant.code)?))
 }
 
-/// Runs a future in a tokio runtime, which termination signals and sockets need.
-fn in_runtime(work: impl Future<Output = Result<SeriesOutcome, LiveError>>) -> Result<SeriesOutcome, LiveError> {
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(TerminalError)?;
-    runtime.block_on(work)
-}
-
 /// The results of a participant's sessions as text.
 pub fn describe(sitting: &SeriesOutcome) -> String {
     let ends: String = sitting.done.iter().map(|end| format!("{}\n", end.describe())).collect();
@@ -127,7 +122,7 @@ impl Planned {
 
     fn stands(&self, progress: &ParticipantProgress) -> String {
         let SeriesRequest { files, out, kind, .. } = &self.series;
-        stands(progress, &operate_command(&files.path, out, &progress.code, *kind))
+        stands(progress, &operate_command(&files.path, out, &progress.code, progress.kind.or(*kind)))
     }
 
     /// The question whether a recording is meant, where others in the folder are of another version of the plan.
@@ -157,29 +152,23 @@ impl Planned {
     }
 
     /// The question whether a recording is meant, where another of the participant is of another kind of participant.
-    fn other_kind(&self, made: &[PlanRecording], code: &str) -> Result<Option<StartPrompt>, LiveError> {
+    fn other_kind(&self, made: &[PlanRecording], code: &str) -> Option<StartPrompt> {
         let kind = self.study.session.participant.kind;
-        for PlanRecording { recording, .. } in made.iter().rev().filter(|made| made.code == code) {
-            let before = LogReader::open(&self.series.out.join(recording))?.header.session.participant.kind;
-            if before != kind {
-                return Ok(Some(StartPrompt::new(
-                    format!("{code}: ANOTHER KIND OF PARTICIPANT"),
-                    vec![
-                        format!(
-                            "Found: {}, by `kind` under [participant] in the session file, or by --participant.",
-                            kind.words()
-                        ),
-                        format!(
-                            "Right, as in {recording} of {code}: {}, --participant {}.",
-                            before.words(),
-                            before.name()
-                        ),
-                    ],
-                    vec![format!("record with the {}", kind.words()), "leave: nothing is recorded".to_string()],
-                )));
-            }
-        }
-        Ok(None)
+        let is_other = |made: &&PlanRecording| made.code == code && made.kind != kind;
+        let PlanRecording { recording, kind: before, .. } = made.iter().rev().find(is_other)?;
+        let as_before = match before {
+            ParticipantKind::External => "kind = \"external\" in the session file, and no --participant".to_string(),
+            _ => format!("--participant {}", before.name()),
+        };
+        Some(StartPrompt::new(
+            format!("{code}: ANOTHER KIND OF PARTICIPANT"),
+            vec![
+                format!("So far: {}, in {recording}.", before.words()),
+                format!("Now: {}, by --participant, or by kind under [participant] in the session file.", kind.words()),
+                format!("To go on as before, leave, and begin again with {as_before}."),
+            ],
+            vec![format!("record with the {}", kind.words()), "leave: nothing is recorded".to_string()],
+        ))
     }
 
     async fn run(self) -> Result<SeriesOutcome, LiveError> {
@@ -199,7 +188,7 @@ impl Planned {
             return Ok(SeriesOutcome { done, remark: Some(self.stands(&progress)) });
         }
         let (made, _) = recordings_of(&self.study, &self.series.out)?;
-        for question in [self.changed(&made, &code)?, self.other_kind(&made, &code)?].into_iter().flatten() {
+        for question in [self.changed(&made, &code)?, self.other_kind(&made, &code)].into_iter().flatten() {
             if ask(&mut station, question).await? != Some(0) {
                 return Ok(SeriesOutcome { done, remark: Some(self.stands(&progress)) });
             }
@@ -296,6 +285,7 @@ fn rehearsal(progress: &ParticipantProgress, out: &Path) -> StartPrompt {
         vec![
             "This is a rehearsal: the session file, or --participant, lets the program play the participant."
                 .to_string(),
+            "Consent and tutorial are left out: they are for people.".to_string(),
             format!("Its recordings go to the folder {out}, and count there as those of {code}."),
             "If people are recorded there, leave, and name another folder with --out.".to_string(),
         ],
@@ -350,6 +340,8 @@ fn which(progress: &ParticipantProgress, recording: &str, slot: usize) -> StartP
         vec![
             format!("The recording {recording} was cut, or ended before everything was done.{left_out}"),
             format!("Where it ended: {ended_where}."),
+            "Continued, it keeps its settings: those of the session file and of options hold for new recordings."
+                .to_string(),
         ],
         vec![on.to_string(), again.to_string()],
     )
@@ -408,8 +400,10 @@ pub(super) fn stands(progress: &ParticipantProgress, operate: &str) -> String {
     stand + &excluded
 }
 
-/// The command that records a participant of a plan. `kind`: that of the participant, if not the session file's.
+/// The command that records a participant of a plan. `kind`: that of the participant, if not the session file's; an
+/// external one is chosen by the session file alone.
 pub(super) fn operate_command(session: &Path, out: &Path, code: &str, kind: Option<ParticipantKind>) -> String {
+    let kind = kind.filter(|kind| *kind != ParticipantKind::External);
     let kind = kind.map_or(String::new(), |kind| format!(" --participant {}", kind.name()));
     let out = match out.to_str() {
         Some(DEFAULT_OUT) => String::new(),

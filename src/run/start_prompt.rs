@@ -8,7 +8,7 @@ use super::error::LiveError;
 use super::event_loop::{self, ConsoleShell, FRAME, LoopEvent, ShellDeadlines, ShellView};
 use super::operator_station::{OperatorStation, take_consent_input};
 use crate::console::ConsoleMessage;
-use crate::console::lists::{StartPrompt, StartReply};
+use crate::console::lists::{ListChoice, StartPrompt};
 use crate::console::text_input::refusal_of_paste;
 use crate::console::view::theme::Theme;
 use tomcom_core::base::time::SessionTime;
@@ -42,8 +42,8 @@ pub(super) async fn ask_consent(
         OpenQuestion { question, on_display, missing_page, asked, button, theme, notice: None, dirty: true };
     let reply = event_loop::run(&mut shell, station).await?;
     Ok(match reply {
-        Some((StartReply::Answer(index), on)) => Some((index, on)),
-        Some((StartReply::Leave, _)) | None => None,
+        Some((ListChoice::Chosen(index), on)) => Some((index, on)),
+        Some((ListChoice::Leave, _)) | None => None,
     })
 }
 
@@ -63,7 +63,7 @@ struct OpenQuestion {
 }
 
 impl ConsoleShell for OpenQuestion {
-    type Outcome = (StartReply, AnswerDevice);
+    type Outcome = (ListChoice, AnswerDevice);
     type Error = LiveError;
 
     fn deadlines(&mut self) -> ShellDeadlines {
@@ -72,7 +72,7 @@ impl ConsoleShell for OpenQuestion {
 
     /// Handles an event. Gaze and other page inputs are discarded during a question; otherwise they would be processed
     /// later as if they were new inputs.
-    fn take(&mut self, event: LoopEvent) -> Result<Option<(StartReply, AnswerDevice)>, LiveError> {
+    fn take(&mut self, event: LoopEvent) -> Result<Option<(ListChoice, AnswerDevice)>, LiveError> {
         let now = SessionTime(self.asked.elapsed().as_nanos() as u64);
         let message = match event {
             LoopEvent::Page(input) if self.on_display => {
@@ -86,7 +86,7 @@ impl ConsoleShell for OpenQuestion {
             _ => None,
         };
         if self.button.is_given(now) {
-            return Ok(Some((StartReply::Answer(0), AnswerDevice::Display)));
+            return Ok(Some((ListChoice::Chosen(0), AnswerDevice::Display)));
         }
         let Some(message) = message else { return Ok(None) };
         self.dirty = true;

@@ -15,15 +15,13 @@ use crossterm::terminal::{
     disable_raw_mode, enable_raw_mode, size,
 };
 use crossterm::{cursor, queue};
-use ratatui::CompletedFrame;
-use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;
+use ratatui::{CompletedFrame, Terminal};
 
 use super::ask::ground;
 use super::event_loop::LoopEvent;
 use super::frames::{FrameWriter, write_within};
-use crate::console::lists::RecordingPicker;
-use crate::console::lists::StartPrompt;
+use crate::console::lists::{RecordingPicker, StartPrompt};
 use crate::console::view::recordings_page::draw_recordings;
 use crate::console::view::sheet::draw_question;
 use crate::console::view::theme::{TerminalBackground, Theme};

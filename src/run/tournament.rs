@@ -27,7 +27,6 @@ pub struct TournamentRequest {
     pub files: SessionSetup,
     /// The concepts, each once.
     pub concepts: Vec<ConceptSpec>,
-    /// Number of trials of each concept.
     pub trials: u64,
     pub shard: SimulationShard,
     /// Folder of the recordings, with a folder for each concept.

@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use super::error::{ReviewError, TerminalError};
+use super::error::ReviewError;
 use super::event_loop;
 use super::leaving::LeavingReason;
 use super::operator_station::OperatorStation;
@@ -42,8 +42,7 @@ pub fn train(lesson: &WizardTrainingRequest) -> Result<(WizardTrainingRecord, Pa
         lesson.recordings.iter().map(|one| open(one)).collect::<FileResult<_>>()?;
     let at = WallTime::now().rfc3339();
     let began = Instant::now();
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(TerminalError)?;
-    let recordings = runtime.block_on(watch(lesson, films, &before))?;
+    let recordings = event_loop::in_runtime(watch(lesson, films, &before))?;
     let minutes = (began.elapsed().as_secs_f64() / 0.6).round() / 100.0;
     let is_complete = recordings.len() == lesson.recordings.len() && recordings.iter().all(|one| one.complete);
     let met = is_complete && lesson.criterion.is_met(&WizardMeasures::sum(recordings.iter().map(|one| &one.measures)));

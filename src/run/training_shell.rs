@@ -8,10 +8,7 @@ use super::event_loop::{ConsoleShell, LoopEvent, ShellView};
 use super::leaving::LeavingReason;
 use super::operator_station::OperatorStation;
 use super::seekable_replay::SeekableReplay;
-use crate::console::console_model::Dialog;
-use crate::console::console_model::NoticeLevel;
-use crate::console::console_model::{Playback, SPEEDS};
-use crate::console::console_model::{TrainingFeedback, TrainingPanel};
+use crate::console::console_model::{Dialog, NoticeLevel, Playback, SPEEDS, TrainingFeedback, TrainingPanel};
 use crate::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, update};
 use crate::run::key_file::key_map;
 use crate::run::terminal::{TerminalScreen, theme};
@@ -172,21 +169,16 @@ impl TrainingShell {
         let Some(verdict) = verdicts(&self.sent, &self.periods).pop() else { return };
         self.signals.push(JudgedSignal { press, clock_ns: clock, signal, worth: verdict.name().to_string() });
         self.show(shown);
+        use NoticeLevel::{Done, Refused};
         let (level, text) = match verdict {
             SignalVerdict::Hit { latency_s, .. } => {
-                (NoticeLevel::Done, format!("hit: the belief has been false for {latency_s:.1} s"))
+                (Done, format!("hit: the belief has been false for {latency_s:.1} s"))
             }
-            SignalVerdict::Repeated => (NoticeLevel::Done, "repeated: a signal already told this".to_string()),
-            SignalVerdict::Harmless => {
-                (NoticeLevel::Done, "harmless: the belief is false, but leads to no error".to_string())
-            }
-            SignalVerdict::Late => {
-                (NoticeLevel::Refused, "late: the false belief was corrected a moment ago".to_string())
-            }
-            SignalVerdict::Wrong => {
-                (NoticeLevel::Refused, format!("wrong: the false belief is about {}", self.wrong_now(clock)))
-            }
-            SignalVerdict::Needless => (NoticeLevel::Refused, "needless: no belief is false now".to_string()),
+            SignalVerdict::Repeated => (Done, "repeated: a signal already told this".to_string()),
+            SignalVerdict::Harmless => (Done, "harmless: the belief is false, but leads to no error".to_string()),
+            SignalVerdict::Late => (Refused, "late: the false belief was corrected a moment ago".to_string()),
+            SignalVerdict::Wrong => (Refused, format!("wrong: the false belief is about {}", self.wrong_now(clock))),
+            SignalVerdict::Needless => (Refused, "needless: no belief is false now".to_string()),
         };
         self.tell(level, format!("{words}: {text}"));
     }
@@ -329,10 +321,10 @@ impl ConsoleShell for TrainingShell {
             lesson.score = format!("{} hit, {missed} missed, {wrong} wrong or needless", measures.hits.unwrap_or(0));
         }
         self.model.now = self.now;
-        let ((length, events), trial_length) = (self.film.length(), self.film.trial_length());
+        let ((_, events), trial_length) = (self.film.length(), self.film.trial_length());
         let event = self.film.position;
         if let Some(playback) = &mut self.model.playback {
-            *playback = Playback { length, trial_length, event, events, ..playback.clone() };
+            *playback = Playback { trial_length, event, events, ..playback.clone() };
         }
     }
 

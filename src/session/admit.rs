@@ -1,11 +1,12 @@
 //! Preconditions of events: whether a session accepts an event now. Preconditions are checked before an input is taken,
 //! and again when an event is applied.
 
+use crate::apply::own_presses;
 use crate::event::{SignalEndReason, TrialEndReason};
 use crate::probes::{self, ProbeEvent};
 use crate::protocol::{self, ProtocolEvent};
 use crate::settings::{Condition, ParticipantKind};
-use crate::{Event, Session, TimelineEvent, TrialPhase, film, gaze_check, person_code, tracker};
+use crate::{Event, Session, TrialPhase, film, gaze_check, person_code, tracker};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::{self, Sender, Signal};
@@ -17,38 +18,34 @@ pub(crate) fn unless(holds: bool, reason: &'static str) -> Result<(), &'static s
     if holds { Ok(()) } else { Err(reason) }
 }
 
-fn refuse_if(refused: bool, reason: &'static str) -> Result<(), &'static str> {
-    unless(!refused, reason)
-}
-
 /// Whether the session accepts this event now. The error says why not, in words for the wizard, as in every `admit`.
 pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
-    let phase = session.phase;
-    refuse_if(phase == TrialPhase::Closed, "the session is over")?;
+    let (phase, robot) = (session.phase, &session.robot);
+    unless(phase != TrialPhase::Closed, "the session is over")?;
     match event {
         Event::TrialStarted => {
-            refuse_if(phase != TrialPhase::Ready, "the trial was started already")?;
-            refuse_if(session.is_calibrating(), "a gaze accuracy check is running")?;
+            unless(phase == TrialPhase::Ready, "the trial was started already")?;
+            unless(!session.is_calibrating(), "a gaze accuracy check is running")?;
             protocol::admit_trial(session)
         }
-        Event::Preflight { .. } => refuse_if(phase != TrialPhase::Ready, "the trial was started already"),
-        Event::TrialPaused => refuse_if(!session.can_be_paused(), "no trial runs"),
+        Event::Preflight { .. } => unless(phase == TrialPhase::Ready, "the trial was started already"),
+        Event::TrialPaused => unless(session.can_be_paused(), "no trial runs"),
         Event::TrialResumed => {
-            refuse_if(phase != TrialPhase::Paused, "the trial is not paused")?;
-            refuse_if(session.can_be_paused(), "the trial goes on by itself after the freeze probe")?;
-            refuse_if(session.is_calibrating(), "a gaze accuracy check is running")
+            unless(phase == TrialPhase::Paused, "the trial is not paused")?;
+            unless(!session.can_be_paused(), "the trial goes on by itself after the freeze probe")?;
+            unless(!session.is_calibrating(), "a gaze accuracy check is running")
         }
         Event::TrialEnded { reason: TrialEndReason::Aborted } => Err("an aborted trial needs a reason: trial_aborted"),
         Event::TrialEnded { .. } => {
-            refuse_if(!matches!(phase, TrialPhase::Running | TrialPhase::Paused), "there is no trial to end")
+            unless(matches!(phase, TrialPhase::Running | TrialPhase::Paused), "there is no trial to end")
         }
         Event::Gaze(sample) => {
             let finite = sample.x.is_finite() && sample.y.is_finite() && sample.confidence.is_finite();
-            refuse_if(!finite, "the gaze sample is not a number")
+            unless(finite, "the gaze sample is not a number")
         }
         Event::Marker { note, observer: Some(observer) } => {
-            refuse_if(note.trim().is_empty(), "an observer's remark has words")?;
-            refuse_if(person_code::fault(observer).is_some(), "an observer has a code, as participants have")
+            unless(!note.trim().is_empty(), "an observer's remark has words")?;
+            unless(person_code::fault(observer).is_none(), "an observer has a code, as participants have")
         }
         Event::MarkerWorded { marker, .. } => {
             let is_open = session.open_marks.iter().any(|(mark, _)| mark == marker);
@@ -59,39 +56,60 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
         Event::Calibration(event) => gaze_check::admit(session, event),
         Event::RobotStage { .. } => unless(session.spec.robot.arm.is_real(), "the robot's arm is not a real one"),
         Event::RobotConfirmed { stage } => {
-            let is_it = session.robot.arm.stage.as_ref().is_some_and(|(present, _)| present == stage);
+            let is_it = robot.arm.stage.as_ref().is_some_and(|(present, _)| present == stage);
             unless(is_it && stage.asks().is_some(), "the arm asks for no confirmation")?;
-            refuse_if(phase == TrialPhase::Running && *stage != ArmStage::Off, "pause the trial first")
+            unless(phase != TrialPhase::Running || *stage == ArmStage::Off, "pause the trial first")
         }
-        Event::RobotMoves(_) | Event::RobotSafety { .. } | Event::RobotTouched { .. } => refuse_if(
-            !session.spec.robot.arm.has_joints(),
+        Event::RobotMoves(_) | Event::RobotSafety { .. } | Event::RobotTouched { .. } => unless(
+            session.spec.robot.arm.has_joints(),
             "the robot's arm is timed in this session: it is not simulated physically",
         ),
-        Event::RobotStopped => refuse_if(session.robot.is_stopped_by_wizard(), "the robot is stopped already"),
-        Event::RobotResumed => refuse_if(!session.robot.stopped, "the robot is not stopped"),
+        Event::RobotStopped => unless(!robot.is_stopped_by_wizard(), "the robot is stopped already"),
+        Event::RobotResumed => unless(robot.stopped, "the robot is not stopped"),
         Event::SignalShown { by, signal, offer, .. } => {
             admit_signal(session, *by, signal)?;
             let is_there = |seq: u64| session.offers.find(seq).is_some_and(|offer| offer.signal() == Some(signal));
-            refuse_if(offer.is_some_and(|seq| !is_there(seq)), "the event names an offer that was not the last one")
+            unless(offer.is_none_or(is_there), "the event names an offer that was not the last one")
         }
         Event::External(_) => unless(session.spec.has_external_mind(), "this session has no external mind"),
         Event::OfferOpened(_) => {
-            refuse_if(phase != TrialPhase::Running, "no trial runs")?;
-            refuse_if(session.offers.unclosed().is_some(), "an offer is open already")
+            unless(phase == TrialPhase::Running, "no trial runs")?;
+            unless(session.offers.unclosed().is_none(), "an offer is open already")
         }
         Event::OfferClosed { offer, .. } => {
             let is_open = session.offers.unclosed().is_some_and(|open| open.seq == *offer);
-            refuse_if(!is_open, "the event names an offer that is not open")
+            unless(is_open, "the event names an offer that is not open")
         }
-        Event::HumanWaits { .. } => refuse_if(phase != TrialPhase::Running, "no trial runs"),
+        Event::HumanWaits { .. } => unless(phase == TrialPhase::Running, "no trial runs"),
         Event::Advised(_) => {
-            refuse_if(phase != TrialPhase::Running, "no trial runs")?;
-            refuse_if(!session.spec.asks_assistant(), "nobody asks the assistant in this session")
+            unless(phase == TrialPhase::Running, "no trial runs")?;
+            unless(session.spec.asks_assistant(), "nobody asks the assistant in this session")
         }
-        Event::SignalEnded { .. } => refuse_if(session.shown.is_none(), "no signal is shown to the participant"),
+        Event::SignalEnded { .. } => unless(session.shown.is_some(), "no signal is shown to the participant"),
         Event::Probe(event) => probes::admit(session, event),
         Event::Protocol(event) => protocol::admit(session, event),
-        other => admit_intervention(session, other),
+        Event::KitchenCorrected { location, content } => admit_correction(session, location, content),
+        Event::RobotHeld { by } => by_the_wizard(*by).and(unless(!robot.held, "the robot is held already")),
+        Event::RobotReleased { by } => by_the_wizard(*by).and(unless(robot.held, "the robot is not held")),
+        Event::RobotSkipped { by } => {
+            by_the_wizard(*by)?;
+            unless(phase == TrialPhase::Running, "the robot's presses can be skipped only while the trial runs")?;
+            unless(robot.intention.is_some(), "the robot is not on its way to a press")
+        }
+        Event::RobotDriven { by, .. } => {
+            by_the_wizard(*by)?;
+            unless(phase == TrialPhase::Running, "the robot's press can be chosen only while the trial runs")?;
+            unless(!robot.stopped, "the robot is stopped: resume it first")
+        }
+        Event::TrialAborted { .. } => {
+            unless(matches!(phase, TrialPhase::Running | TrialPhase::Paused), "no trial runs that could be aborted")
+        }
+        Event::TrialExcluded { .. } => {
+            unless(phase != TrialPhase::Ready, "no trial has begun that could be excluded")?;
+            unless(session.excluded.is_none(), "the trial is excluded already")
+        }
+        Event::TrialIncluded => unless(session.excluded.is_some(), "the trial is not excluded"),
+        _ => Ok(()),
     }
 }
 
@@ -108,25 +126,19 @@ pub fn may_send(session: &Session, by: Sender) -> Result<(), &'static str> {
 /// What never allows signals comes before what does not allow them now.
 pub(crate) fn may_send_now(session: &Session, by: Sender) -> Result<(), &'static str> {
     may_send(session, by)?;
-    refuse_if(session.phase != TrialPhase::Running, "signals are sent while the trial runs")
+    unless(session.phase == TrialPhase::Running, "signals are sent while the trial runs")
 }
 
 fn admit_signal(session: &Session, by: Sender, signal: &Signal) -> Result<(), &'static str> {
     may_send_now(session, by)?;
-    if matches!(signal, Signal::Propose(_)) && session.spec.assistant.concept != ConceptName::Dev {
-        return Err("only DEV proposes presses");
-    }
-    if matches!(signal, Signal::Propose(_)) && by != Sender::Assistant {
-        return Err("proposed presses are sent by the assistant");
+    if let Signal::Propose(_) = signal {
+        unless(session.spec.assistant.concept == ConceptName::Dev, "only DEV proposes presses")?;
+        unless(by == Sender::Assistant, "proposed presses are sent by the assistant")?;
     }
     let highlighted = signal.location(&session.kitchen).filter(|_| matches!(signal, Signal::Highlight(_)));
-    if highlighted.is_some_and(|location| !session.highlights().holds(location)) {
-        return Err("the session does not highlight this location");
-    }
-    match communication::unavailable(&session.kitchen, session.state, signal) {
-        Some(reason) => Err(reason),
-        None => Ok(()),
-    }
+    let may_be = highlighted.is_none_or(|location| session.highlights().holds(location));
+    unless(may_be, "the session does not highlight this location")?;
+    communication::unavailable(&session.kitchen, session.state, signal).map_or(Ok(()), Err)
 }
 
 /// Rules for the wizard's keys, such as the cool-down between signals; they do not apply to events in recordings.
@@ -155,9 +167,7 @@ pub(crate) fn is_too_early(session: &Session, now: SessionTime) -> bool {
     let Some(pace_s) = spec.trial.pace_s.filter(|_| spec.participant.kind != ParticipantKind::Simulated) else {
         return false;
     };
-    let is_own = |what: &TimelineEvent| matches!(what, TimelineEvent::Press { agent: Agent::Human, .. });
-    let last = session.timeline.iter().rfind(|entry| is_own(&entry.what));
-    last.is_some_and(|last| session.age(last.time, now).as_secs_f64() < pace_s)
+    own_presses(session).next().is_some_and(|last| session.age(last, now).as_secs_f64() < pace_s)
 }
 
 /// Whether an event comes from outside (wizard, participant, tracker, a real arm) rather than from the running session itself.
@@ -225,55 +235,20 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
     }
 }
 
-fn admit_intervention(session: &Session, event: &Event) -> Result<(), &'static str> {
-    let (phase, robot) = (session.phase, &session.robot);
-    match event {
-        Event::KitchenCorrected { location, content } => admit_correction(session, location, content),
-        Event::RobotHeld { by } => by_the_wizard(*by).and(refuse_if(robot.held, "the robot is held already")),
-        Event::RobotReleased { by } => by_the_wizard(*by).and(refuse_if(!robot.held, "the robot is not held")),
-        Event::RobotSkipped { by } => {
-            by_the_wizard(*by)?;
-            refuse_if(phase != TrialPhase::Running, "the robot's presses can be skipped only while the trial runs")?;
-            refuse_if(robot.intention.is_none(), "the robot is not on its way to a press")
-        }
-        Event::RobotDriven { by, .. } => {
-            by_the_wizard(*by)?;
-            refuse_if(phase != TrialPhase::Running, "the robot's press can be chosen only while the trial runs")?;
-            refuse_if(robot.stopped, "the robot is stopped: resume it first")
-        }
-        Event::TrialAborted { .. } => {
-            refuse_if(!matches!(phase, TrialPhase::Running | TrialPhase::Paused), "no trial runs that could be aborted")
-        }
-        Event::TrialExcluded { .. } => {
-            refuse_if(phase == TrialPhase::Ready, "no trial has begun that could be excluded")?;
-            refuse_if(session.excluded.is_some(), "the trial is excluded already")
-        }
-        Event::TrialIncluded => refuse_if(session.excluded.is_none(), "the trial is not excluded"),
-        _ => Ok(()),
-    }
-}
-
 fn by_the_wizard(by: Sender) -> Result<(), &'static str> {
     unless(by == Sender::Wizard, "only the wizard can hold the robot, skip its presses and choose them")
 }
 
 fn admit_correction(session: &Session, location: &str, content: &str) -> Result<(), &'static str> {
-    if !matches!(session.phase, TrialPhase::Running | TrialPhase::Paused) {
-        return Err("the kitchen can be corrected only during a trial");
-    }
-    if session.is_frozen() {
-        // The probe's questions are about the kitchen as it was when the task was frozen.
-        return Err("the kitchen can be corrected only after the freeze probe");
-    }
+    let has_begun = matches!(session.phase, TrialPhase::Running | TrialPhase::Paused);
+    unless(has_begun, "the kitchen can be corrected only during a trial")?;
+    // The probe's questions are about the kitchen as it was when the task was frozen.
+    unless(!session.is_frozen(), "the kitchen can be corrected only after the freeze probe")?;
     let kitchen = &session.kitchen;
     let place = kitchen.location_named(location).ok_or("the kitchen has no location with this name")?;
     let what = kitchen.content_named(content).ok_or("the kitchen has no content with this name")?;
-    match () {
-        () if kitchen.location(place).kind == LocationKind::Order => {
-            Err("orders are shown by the program, and cannot be corrected")
-        }
-        () if session.state.content(place) == what => Err("the program assumes this content already"),
-        () if what != ContentId::EMPTY && !kitchen.accepts(place, what) => Err("this content cannot be at this place"),
-        () => Ok(()),
-    }
+    let is_order = kitchen.location(place).kind == LocationKind::Order;
+    unless(!is_order, "orders are shown by the program, and cannot be corrected")?;
+    unless(session.state.content(place) != what, "the program assumes this content already")?;
+    unless(what == ContentId::EMPTY || kitchen.accepts(place, what), "this content cannot be at this place")
 }

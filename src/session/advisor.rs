@@ -5,9 +5,7 @@ use crate::follower::SessionFollower;
 use crate::{Event, Session};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
-use tomcom_core::communication::concept::concept;
-use tomcom_core::communication::concept::{Concept, ConceptName, DecisionPoint};
-use tomcom_core::communication::concept::{RobotIntent, Situation};
+use tomcom_core::communication::concept::{Concept, ConceptName, DecisionPoint, RobotIntent, Situation, concept};
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{AspectId, State};
@@ -47,46 +45,26 @@ impl AdviceRequest {
             }
             None => RobotIntent::Free,
         };
-        let (state, robot_press_s) = (session.state, session.spec.robot.press_s);
-        let signals = follower.repeats.allowed(&session.kitchen, session.highlights());
-        let error = follower.judged.last().filter(|press| press.verdict.error).map(|press| press.seq);
-        let changed = session.changed_at(time).map(AspectId::of_location).collect();
-        let presses = session.all_presses();
-        let forecast = follower.filter.forecast();
-        let clock_s = session.trial_clock(time).as_secs_f64();
-        let since = follower.happenings.as_mut().map(Happenings::take).unwrap_or_default();
         AdviceRequest {
             seq,
             time,
-            presses,
-            state,
+            presses: session.all_presses(),
+            state: session.state,
             belief,
-            changed,
+            changed: session.changed_at(time).map(AspectId::of_location).collect(),
             robot,
-            robot_press_s,
-            forecast,
-            signals,
-            error,
-            clock_s,
-            since,
+            robot_press_s: session.spec.robot.press_s,
+            forecast: follower.filter.forecast(),
+            signals: follower.repeats.allowed(&session.kitchen, session.highlights()),
+            error: follower.judged.last().filter(|press| press.verdict.error).map(|press| press.seq),
+            clock_s: session.trial_clock(time).as_secs_f64(),
+            since: follower.happenings.as_mut().map(Happenings::take).unwrap_or_default(),
         }
     }
 
     pub fn moment(&self) -> DecisionPoint<'_> {
-        let AdviceRequest {
-            seq,
-            time,
-            presses,
-            state,
-            ref belief,
-            ref changed,
-            robot,
-            robot_press_s,
-            forecast,
-            ref signals,
-            error,
-            ..
-        } = *self;
+        let AdviceRequest { seq, time, presses, state, robot, robot_press_s, forecast, error, .. } = *self;
+        let (belief, changed, signals) = (&self.belief, &self.changed, &self.signals);
         let situation = Situation { state, belief, changed, robot, robot_press_s, forecast };
         DecisionPoint { seq, time, presses, situation, signals, error }
     }
@@ -126,7 +104,7 @@ impl Advisor {
 
     /// Number of decisions whose cost to go was in no cache.
     pub fn computed_decisions(&self) -> u64 {
-        self.cost.counts().decisions_missed
+        self.cost.decisions_missed()
     }
 
     /// Prepares for likely next requests as long as `proceed` returns true; see [`Concept::work_ahead`].

@@ -34,11 +34,17 @@ pub struct AppliedEvent {
 }
 
 /// Applies an event. Unknown names, decreasing times and events that [`admit`] refuses are errors; the session is
-/// unchanged then.
+/// unchanged then. Whoever reads a log checks the sequence number.
 pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<AppliedEvent, ApplyError> {
-    check(session, stamped)?;
-    let now = stamped.time;
-    let named = Named { session, seq: stamped.seq };
+    let (named, now) = (Named { session, seq: stamped.seq }, stamped.time);
+    if now < session.time {
+        let found = format!("t_ns = {} after {}", now.0, session.time.0);
+        return Err(named.error(found, "times that never decrease"));
+    }
+    if let Err(reason) = admit(session, &stamped.event) {
+        let found = format!("\"{}\", but {reason}", stamped.event.kind());
+        return Err(named.error(found, "an event that is possible at this point of the session"));
+    }
     let (mut effects, mut change) = (Vec::new(), KitchenChange::None);
     match &stamped.event {
         Event::TrialStarted => {
@@ -64,7 +70,9 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
             session.excluded = None;
             session.note_event(now, &stamped.event);
         }
-        Event::FocusLost | Event::FocusRegained => session.note_event(now, &stamped.event),
+        Event::FocusLost | Event::FocusRegained | Event::RobotTouched { .. } => {
+            session.note_event(now, &stamped.event);
+        }
         Event::Gaze(sample) => take_sample(session, now, *sample),
         Event::Tracker(event) => {
             session.tracker.apply(now, event);
@@ -103,8 +111,16 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
                 waits_for.iter().map(|button| named.button(Agent::Human, button)).collect::<Result<_, _>>()?;
             session.robot.idle = Some((*reason, waits_for));
         }
-        Event::RobotMoves(_) | Event::RobotSafety { .. } | Event::RobotTouched { .. } => {
-            change_arm(session, now, &stamped.event);
+        Event::RobotMoves(moment) => session.robot.arm.last = Some((now, *moment)),
+        Event::RobotSafety { mode, force_n, joint } => {
+            let arm = &mut session.robot.arm;
+            (arm.mode, arm.stopped_by_n, arm.stopped_by_joint) = (*mode, *force_n, *joint);
+            // A stop by the wizard has an event of its own, so only other stops are noted here.
+            if mode.is_stopped() && !session.robot.stopped {
+                session.robot.stopped = true;
+                session.robot.idle = None;
+                session.note_event(now, &stamped.event);
+            }
         }
         Event::RobotStage { stage, found } => {
             session.robot.arm.stage = Some((*stage, found.clone()));
@@ -190,23 +206,6 @@ pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<Applie
     Ok(AppliedEvent { effects, change })
 }
 
-/// Time and precondition; whoever reads a log checks the sequence number.
-fn check(session: &Session, stamped: &TimestampedEvent) -> Result<(), ApplyError> {
-    if stamped.time < session.time {
-        return Err(ApplyError {
-            seq: stamped.seq,
-            found: format!("t_ns = {} after {}", stamped.time.0, session.time.0),
-            remedy: "times that never decrease".to_string(),
-        });
-    }
-    if let Err(reason) = admit(session, &stamped.event) {
-        let found = format!("\"{}\", but {reason}", stamped.event.kind());
-        let remedy = "an event that is possible at this point of the session".to_string();
-        return Err(ApplyError { seq: stamped.seq, found, remedy });
-    }
-    Ok(())
-}
-
 /// Looks up what an event names in the session's kitchen.
 struct Named<'a> {
     session: &'a Session,
@@ -242,8 +241,7 @@ impl Named<'_> {
     }
 
     fn dish(&self, name: &str) -> Result<DishId, ApplyError> {
-        let dish = self.session.kitchen.dishes.iter().position(|dish| dish.name == name);
-        let dish = dish.map(|index| DishId(index as u8));
+        let dish = self.session.kitchen.dish_named(name);
         dish.ok_or_else(|| self.error(format!("the dish \"{name}\""), "a dish of the recipe file"))
     }
 }
@@ -338,7 +336,6 @@ fn close(session: &mut Session, now: SessionTime, effects: &mut Vec<SessionEffec
     session.offers.closes(now, OfferCloseReason::TrialEnded);
     session.advice = None;
     effects.push(SessionEffect::CancelAll);
-    effects.push(SessionEffect::Close);
 }
 
 fn show(
@@ -435,7 +432,6 @@ pub enum SessionEffect {
     Cancel(Timer),
     CancelAll,
     Postpone(SessionTime),
-    Close,
 }
 
 /// What happens when a timer is due.
@@ -487,24 +483,6 @@ pub(crate) fn resume_clock(session: &mut Session, now: SessionTime) -> SessionTi
     by
 }
 
-fn change_arm(session: &mut Session, now: SessionTime, event: &Event) {
-    match event {
-        Event::RobotMoves(moment) => session.robot.arm.last = Some((now, *moment)),
-        Event::RobotTouched { .. } => session.note_event(now, event),
-        Event::RobotSafety { mode, force_n, joint } => {
-            let arm = &mut session.robot.arm;
-            (arm.mode, arm.stopped_by_n, arm.stopped_by_joint) = (*mode, *force_n, *joint);
-            // A stop by the wizard has an event of its own, so only other stops are noted here.
-            if mode.is_stopped() && !session.robot.stopped {
-                session.robot.stopped = true;
-                session.robot.idle = None;
-                session.note_event(now, event);
-            }
-        }
-        _ => {}
-    }
-}
-
 const SILENT_INTERVALS: u64 = 3;
 /// Three usual intervals of the paper's participants.
 const LEAST_SILENCE: SessionTime = SessionTime(6_000_000_000);
@@ -526,7 +504,7 @@ pub fn silence_so_far(session: &Session, now: SessionTime) -> SessionTime {
 }
 
 /// Times of the human's counted presses, the latest first.
-fn own_presses(session: &Session) -> impl Iterator<Item = SessionTime> + '_ {
+pub(crate) fn own_presses(session: &Session) -> impl Iterator<Item = SessionTime> + '_ {
     let is_own = |what: &TimelineEvent| matches!(what, TimelineEvent::Press { agent: Agent::Human, .. });
     session.timeline.iter().rev().filter(move |entry| is_own(&entry.what)).map(|entry| entry.time)
 }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::Session;
-use crate::preflight_checks::{PreflightCheck, PreflightVerdict};
+use crate::preflight_checks::PreflightCheck;
 use crate::tracker::DeviceConnection;
 use tomcom_core::base::text::count;
 use tomcom_core::base::time::SessionTime;
@@ -77,8 +77,7 @@ impl ButtonBoxStatus {
 pub(crate) fn check(session: &Session, now: SessionTime) -> Option<PreflightCheck> {
     let path = session.spec.participant.button_box.as_ref()?;
     let ButtonBoxStatus { link, last, fault } = &session.button_box;
-    let failed =
-        |reason: &str| PreflightCheck::new("button box", PreflightVerdict::Failed, format!("{path}: {reason}"), REMEDY);
+    let failed = |reason: &str| PreflightCheck::failed("button box", format!("{path}: {reason}"), REMEDY);
     let pressed = match (link, last) {
         (DeviceConnection::Lost { reason, .. }, _) => return Some(failed(reason)),
         (DeviceConnection::Unknown, _) => return Some(failed("it is being opened")),
@@ -91,8 +90,6 @@ pub(crate) fn check(session: &Session, now: SessionTime) -> Option<PreflightChec
                   (gamepad)";
     Some(match fault {
         None => PreflightCheck::ok("button box", format!("{path}, {pressed}")),
-        Some(fault) => {
-            PreflightCheck::new("button box", PreflightVerdict::Warning, format!("{path}, {pressed}; {fault}"), remedy)
-        }
+        Some(fault) => PreflightCheck::warning("button box", format!("{path}, {pressed}; {fault}"), remedy),
     })
 }

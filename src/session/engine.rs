@@ -93,28 +93,21 @@ impl SessionEngine {
     ///
     /// The settings ask for an arm with simulated physics, and this build has none: see `SessionSpec::require_built`.
     pub fn new(kitchen: Arc<Kitchen>, spec: SessionSpec, trial: u64, cost: CostToGo) -> SessionEngine {
-        let orders = OrderList::new(kitchen.dishes.len(), &spec, trial);
-        let robot = trial_robot(&kitchen, &spec, trial);
         let participant = (spec.participant.kind == ParticipantKind::Simulated)
             .then(|| simulated_participant(kitchen.clone(), &spec, trial));
-        let gaps = gaze_gaps(&spec, trial);
-        let wizard = scripted_wizard(&kitchen, &spec, trial);
-        let follower = SessionFollower::new(Session::new(kitchen, spec, trial), cost);
-        let timers = TimerQueue::default();
-        let (out, questions) = (Vec::new(), Vec::new());
         SessionEngine {
-            follower,
-            timers,
-            orders,
-            robot,
+            timers: TimerQueue::default(),
+            orders: OrderList::new(kitchen.dishes.len(), &spec, trial),
+            robot: trial_robot(&kitchen, &spec, trial),
             participant,
-            gaps,
-            wizard,
+            gaps: gaze_gaps(&spec, trial),
+            wizard: scripted_wizard(&kitchen, &spec, trial),
+            follower: SessionFollower::new(Session::new(kitchen, spec, trial), cost),
             next_seq: 0,
-            out,
+            out: Vec::new(),
             to_ask: None,
             asked: None,
-            questions,
+            questions: Vec::new(),
             recorded_estimates: VecDeque::new(),
         }
     }
@@ -353,15 +346,13 @@ impl SessionEngine {
         self.measure_calibration(now);
         Ok(())
     }
-}
 
-impl SessionEngine {
     fn perform(&mut self, effect: SessionEffect) {
         match effect {
             SessionEffect::At { time, timer } => self.timers.set(time, timer),
             SessionEffect::Cancel(timer) => self.timers.cancel(timer),
             SessionEffect::CancelAll => {
-                self.timers.cancel_all();
+                self.timers.pending.clear();
                 self.robot.rest();
             }
             SessionEffect::Postpone(by) => {
@@ -374,12 +365,11 @@ impl SessionEngine {
                     wizard.postpone(by);
                 }
             }
-            SessionEffect::Close => {}
         }
     }
 
     fn fire_timer(&mut self, now: SessionTime) {
-        let Some(timer) = self.timers.take_first() else { return };
+        let Some((_, _, timer)) = self.timers.pending.pop_first() else { return };
         let kitchen = self.session().kitchen.clone();
         let event = match timer {
             Timer::ClearOrder(order) => Event::OrderCleared { order: kitchen.location(order).name.clone() },
@@ -396,9 +386,7 @@ impl SessionEngine {
         };
         self.record_own(now, event);
     }
-}
 
-impl SessionEngine {
     fn check_criterion(&mut self, now: SessionTime) {
         let session = self.session();
         let Some((step, protocol)) = session.step() else { return };
@@ -456,10 +444,6 @@ impl TimerQueue {
         self.pending.retain(|(_, _, pending)| *pending != timer);
     }
 
-    fn cancel_all(&mut self) {
-        self.pending.clear();
-    }
-
     fn postpone(&mut self, by: SessionTime) {
         let pending = std::mem::take(&mut self.pending);
         self.pending = pending.into_iter().map(|(time, serial, timer)| (time + by, serial, timer)).collect();
@@ -467,9 +451,5 @@ impl TimerQueue {
 
     fn next_due(&self) -> Option<SessionTime> {
         self.pending.first().map(|(time, _, _)| *time)
-    }
-
-    fn take_first(&mut self) -> Option<Timer> {
-        self.pending.pop_first().map(|(_, _, timer)| timer)
     }
 }

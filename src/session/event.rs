@@ -23,12 +23,8 @@ use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::communication::{Sender, Signal};
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::kitchen::Agent;
-use tomcom_core::mind::RecordedBelief;
-use tomcom_core::mind::RecordedEstimate;
-use tomcom_core::robot::ArmSample;
-use tomcom_core::robot::ArmStage;
-use tomcom_core::robot::SafetyMode;
-use tomcom_core::robot::{AbortReason, IdleReason};
+use tomcom_core::mind::{RecordedBelief, RecordedEstimate};
+use tomcom_core::robot::{AbortReason, ArmSample, ArmStage, IdleReason, SafetyMode};
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TimestampedEvent {
@@ -45,6 +41,7 @@ pub struct TimestampedEvent {
 #[serde(tag = "kind", rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum Event {
+    /// The checks before the trial.
     Preflight {
         checks: Vec<PreflightCheck>,
         /// Whether the wizard started the trial although not all checks were ok.
@@ -54,23 +51,23 @@ pub enum Event {
     TrialStarted,
     /// The trial is paused: clock, robot and orders stop, presses have no effect.
     TrialPaused,
+    /// The trial's clock goes on.
     TrialResumed,
-    TrialEnded {
-        reason: TrialEndReason,
-    },
+    /// By itself, or by the wizard; an aborted one has an event of its own.
+    TrialEnded { reason: TrialEndReason },
     /// The trial is aborted and does not count; it may be repeated in another recording.
-    TrialAborted {
-        reason: String,
-    },
-    TrialExcluded {
-        reason: String,
-    },
+    TrialAborted { reason: String },
+    /// The trial is left out of the analysis.
+    TrialExcluded { reason: String },
+    /// An excluded trial counts again.
     TrialIncluded,
+    /// On the display or beside it.
     Gaze(GazeSample),
     /// Other than a gaze sample.
     Tracker(TrackerEvent),
     /// A step of a gaze accuracy check.
     Calibration(GazeCheckEvent),
+    /// Of a button, by the participant or the robot; it may have no effect.
     Press {
         agent: Agent,
         button: String,
@@ -82,14 +79,10 @@ pub enum Event {
         #[serde(default, skip_serializing_if = "std::ops::Not::not")]
         button_box: bool,
     },
-    OrderShown {
-        order: String,
-        dish: String,
-    },
+    /// A new order appears.
+    OrderShown { order: String, dish: String },
     /// The location no longer shows `served`.
-    OrderCleared {
-        order: String,
-    },
+    OrderCleared { order: String },
     /// The human has not pressed for unusually long, and may be stuck.
     HumanWaits {
         /// Since the human's last press, without pauses.
@@ -103,10 +96,8 @@ pub enum Event {
         #[serde(default, skip_serializing_if = "std::ops::Not::not")]
         initiative: bool,
     },
-    RobotAborts {
-        button: String,
-        reason: AbortReason,
-    },
+    /// The robot gives up its press.
+    RobotAborts { button: String, reason: AbortReason },
     /// The robot has no useful press.
     RobotIdles {
         reason: IdleReason,
@@ -133,37 +124,24 @@ pub enum Event {
         found: String,
     },
     /// The wizard confirms what a real arm asks for in this stage.
-    RobotConfirmed {
-        stage: ArmStage,
-    },
+    RobotConfirmed { stage: ArmStage },
     /// Witness: a contact between the simulated arm and the human, with its peak force; once per contact.
-    RobotTouched {
-        force_n: f64,
-    },
+    RobotTouched { force_n: f64 },
+    /// By the wizard.
     RobotStopped,
+    /// The wizard lets the stopped robot go on.
     RobotResumed,
     /// While held, the robot starts no press and waits before the button of the ongoing one. Only the wizard can hold,
     /// release, skip and drive.
-    RobotHeld {
-        by: Sender,
-    },
-    RobotReleased {
-        by: Sender,
-    },
+    RobotHeld { by: Sender },
+    /// The held robot goes on.
+    RobotReleased { by: Sender },
     /// The robot gives up its ongoing press and decides anew.
-    RobotSkipped {
-        by: Sender,
-    },
+    RobotSkipped { by: Sender },
     /// The wizard chooses the robot's next press.
-    RobotDriven {
-        by: Sender,
-        button: String,
-    },
+    RobotDriven { by: Sender, button: String },
     /// The wizard corrects the program's state, which differed from the real kitchen.
-    KitchenCorrected {
-        location: String,
-        content: String,
-    },
+    KitchenCorrected { location: String, content: String },
     /// Replaces the signal that was shown.
     SignalShown {
         by: Sender,
@@ -176,19 +154,18 @@ pub enum Event {
     Advised(Recommendation),
     /// From an external concept or participant.
     External(ExternalEvent),
+    /// A recommendation is offered to the wizard.
     OfferOpened(OfferedAdvice),
+    /// Taken or not.
     OfferClosed {
         /// Sequence number of its `offer_opened`.
         offer: u64,
         reason: OfferCloseReason,
     },
     /// Witness: the first frame with the signal of this sequence number was written to the terminal.
-    SignalDrawn {
-        signal: u64,
-    },
-    SignalEnded {
-        reason: SignalEndReason,
-    },
+    SignalDrawn { signal: u64 },
+    /// It disappears from the participant's display.
+    SignalEnded { reason: SignalEndReason },
     /// A time mark of the wizard, without words if they are to be typed later; or an observer's remark.
     Marker {
         note: String,
@@ -202,13 +179,13 @@ pub enum Event {
         marker: u64,
         note: String,
     },
+    /// A step of a freeze probe.
     Probe(ProbeEvent),
+    /// A step of the study around the trial.
     Protocol(ProtocolEvent),
     /// Witness: the wall clock advanced by this much more than session time (negative: less), because the computer was
     /// suspended or its clock was set.
-    ClockJumped {
-        by_ms: i64,
-    },
+    ClockJumped { by_ms: i64 },
     /// Witness.
     Display(DisplayEvent),
     /// Witness: other than a press.
@@ -218,9 +195,7 @@ pub enum Event {
     /// Witness: the visible content of the wizard's screen changes.
     Screen(WizardScreenContent),
     /// Witness: from now on the wizard sees how these concepts compare with the wizard.
-    Unblinded {
-        concepts: Vec<ConceptName>,
-    },
+    Unblinded { concepts: Vec<ConceptName> },
     /// Witness: without keyboard focus no key arrives, not even the robot stop.
     FocusLost,
     /// Witness.
@@ -303,11 +278,7 @@ pub enum TrialEndReason {
     Aborted,
 }
 
-impl TrialEndReason {
-    pub fn name(self) -> &'static str {
-        self.into()
-    }
-}
+named!(TrialEndReason);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::admit::unless;
 use crate::settings::SettingError;
 use tomcom_core::base::time::SessionTime;
 
@@ -90,8 +91,6 @@ impl FilmEvent {
 }
 
 pub(crate) fn admit(event: &FilmEvent) -> Result<(), &'static str> {
-    match event {
-        FilmEvent::Began { file, .. } if !is_recorded_film(file) => Err("a camera's film has another name"),
-        _ => Ok(()),
-    }
+    let is_named = !matches!(event, FilmEvent::Began { file, .. } if !is_recorded_film(file));
+    unless(is_named, "a camera's film has another name")
 }

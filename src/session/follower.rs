@@ -107,27 +107,24 @@ impl SessionFollower {
         let attributor = ErrorAttributor::new(spec.human.decision.clone(), seed);
         let filter = BeliefFilter::new(kitchen, spec.human.clone(), seed);
         let happenings = session.spec.external_concept().map(|_| Happenings::default());
-        let (judged, episodes) = (Vec::new(), FalseBeliefTracker::default());
-        let (timing, belief, told_cause, estimated, finds_causes) = (None, None, None, None, true);
-        let repeats = SignalRepeatRule::default();
         SessionFollower {
             session,
-            judged,
-            episodes,
+            judged: Vec::new(),
+            episodes: FalseBeliefTracker::default(),
             filter,
             false_beliefs: EstimatedFalseBeliefs::default(),
-            repeats,
+            repeats: SignalRepeatRule::default(),
             signals: WizardLog::default(),
-            timing,
+            timing: None,
             cost,
             judge,
             attributor,
             updated_at: None,
-            belief,
-            told_cause,
-            finds_causes,
+            belief: None,
+            told_cause: None,
+            finds_causes: true,
             estimates: true,
-            estimated,
+            estimated: None,
             probed: None,
             happenings,
         }
@@ -312,6 +309,12 @@ impl SessionFollower {
         let belief_known = belief.is_some();
         let (seq, time, button, before) = (stamped.seq, stamped.time, press.button, press.before);
         self.judged.push(JudgedPress { seq, time, button, before, verdict, belief_known, cause });
+    }
+
+    /// The judgement of the press in the event with this number, with its index; `None` if it does not count.
+    pub fn judgement(&self, seq: u64) -> Option<(usize, &JudgedPress)> {
+        let index = self.judged.binary_search_by_key(&seq, |press| press.seq).ok()?;
+        Some((index, &self.judged[index]))
     }
 
     /// When what shows in a judged press, such as an error, ends: with the human's next press; `None`: with the recording.

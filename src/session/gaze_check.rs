@@ -21,27 +21,24 @@ const READY_S: f64 = 1.0;
 #[serde(tag = "what", rename_all = "snake_case")]
 pub enum GazeCheckEvent {
     /// Begins or restarts, with targets in fractions of the display, in the order in which they are shown.
-    Begun {
-        targets: Vec<[f64; 2]>,
-    },
-    TargetShown {
-        target: usize,
-    },
+    Begun { targets: Vec<[f64; 2]> },
+    /// By its index.
+    TargetShown { target: usize },
+    /// After the last one.
     TargetsHidden,
+    /// From the samples of all targets.
     Measured {
         /// `None` if too few gaze samples were usable.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         found: Option<GazeAccuracy>,
     },
+    /// The wizard takes the result.
     Accepted {
         /// Whether gaze is corrected by the measured offset from now on.
         corrected: bool,
     },
     /// The accepted result of the participant's previous recording is used again.
-    Carried {
-        found: GazeAccuracy,
-        corrected: bool,
-    },
+    Carried { found: GazeAccuracy, corrected: bool },
     /// The result of an earlier accepted check remains valid.
     Dismissed,
 }

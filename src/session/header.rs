@@ -67,12 +67,10 @@ impl LogHeader {
     }
 
     pub fn new(session: SessionSpec, trial: u64, layout: RecordedFile, recipes: RecordedFile) -> LogHeader {
-        let program = env!("CARGO_PKG_VERSION").to_string();
-        let (format, version) = (FORMAT.to_string(), VERSION);
         LogHeader {
-            format,
-            version,
-            program,
+            format: FORMAT.to_string(),
+            version: VERSION,
+            program: env!("CARGO_PKG_VERSION").to_string(),
             trial,
             started: None,
             continues: None,

@@ -42,7 +42,7 @@ impl SimulatedRobotOperator {
 pub fn require(spec: &SessionSpec, file: &Path) -> FileResult<()> {
     if let ArmKind::Ur(address) = spec.robot.arm {
         let found = format!("arm = {{ ur = \"{address}\" }}: a real arm, in a run without a console");
-        return Err(FileError::from_finding(file, found, "--arm physics or --arm timed".to_string()));
+        return Err(FileError::from_finding(file, found, "--arm physics or --arm timed"));
     }
     spec.require_built().map_err(|missing| FileError::not_built(file, missing))
 }

@@ -14,6 +14,17 @@
 
 #![deny(unsafe_code)]
 
+/// The name of a variant in files, as strum makes it.
+macro_rules! named {
+    ($($enumeration:ty),+) => {
+        $(impl $enumeration {
+            pub fn name(self) -> &'static str {
+                self.into()
+            }
+        })+
+    };
+}
+
 pub mod admit;
 pub mod advisor;
 pub mod apply;

@@ -91,17 +91,15 @@ fn opening(session: &Session, now: SessionTime) -> Option<OfferedAdvice> {
     }
     let advice = session.advice.as_ref()?;
     let (for_seq, visible) = (advice.for_seq, is_visible(session));
+    let without_value =
+        |what| OfferedAdvice { what, for_seq, worth: None, reason: None, words: advice.words.clone(), visible };
     if let Some(proposal) = &advice.proposal {
-        let what = Signal::Propose(proposal.presses.clone());
-        let words = advice.words.clone();
-        return Some(OfferedAdvice { what, for_seq, worth: None, reason: None, words, visible });
+        return Some(without_value(Signal::Propose(proposal.presses.clone())));
     }
     if advice.options.is_empty() {
         // An external concept that names a signal without its value.
         let signal = advice.best.as_ref()?;
-        let is_possible = unavailable(&session.kitchen, session.state, signal).is_none();
-        let (what, words) = (signal.clone(), advice.words.clone());
-        return is_possible.then_some(OfferedAdvice { what, for_seq, worth: None, reason: None, words, visible });
+        return unavailable(&session.kitchen, session.state, signal).is_none().then(|| without_value(signal.clone()));
     }
     let option = candidate(session, advice)?;
     let SignalOption { benefit, standard_error, net, .. } = *option;

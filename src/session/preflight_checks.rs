@@ -52,6 +52,14 @@ impl PreflightCheck {
     pub fn ok(name: &str, found: impl Into<String>) -> PreflightCheck {
         PreflightCheck::new(name, PreflightVerdict::Ok, found, "")
     }
+
+    pub fn warning(name: &str, found: impl Into<String>, remedy: impl Into<String>) -> PreflightCheck {
+        PreflightCheck::new(name, PreflightVerdict::Warning, found, remedy)
+    }
+
+    pub fn failed(name: &str, found: impl Into<String>, remedy: impl Into<String>) -> PreflightCheck {
+        PreflightCheck::new(name, PreflightVerdict::Failed, found, remedy)
+    }
 }
 
 /// Rate below which short looks are missed.
@@ -65,12 +73,7 @@ const FREE_BYTES: (u64, u64) = (1 << 30, 50 << 20);
 pub fn space(free_bytes: Option<u64>) -> PreflightCheck {
     let remedy = "free some space, or record elsewhere with --out";
     let Some(free) = free_bytes else {
-        return PreflightCheck::new(
-            "free space",
-            PreflightVerdict::Warning,
-            "the system does not say how much space is free",
-            remedy,
-        );
+        return PreflightCheck::warning("free space", "the system does not say how much space is free", remedy);
     };
     let verdict = match free {
         free if free >= FREE_BYTES.0 => PreflightVerdict::Ok,
@@ -94,7 +97,7 @@ fn condition(session: &Session) -> Option<PreflightCheck> {
     }
     let found = format!("{}{sees}; planned: {}", arm.title(), planned.title());
     let remedy = "what the wizard sees is part of the condition: start the trial anew with the plan's settings";
-    Some(PreflightCheck::new("condition", PreflightVerdict::Failed, found, remedy))
+    Some(PreflightCheck::failed("condition", found, remedy))
 }
 
 /// How it differs from the named model, unless it is the default.
@@ -109,12 +112,12 @@ fn external_mind(session: &Session, role: MindRole, command: &str) -> PreflightC
     match (external.over.get(&role), external.names.get(&role)) {
         (Some(found), _) => {
             let remedy = "quit tomcom, and try in a shell whether the command starts; the trial would go on without it";
-            PreflightCheck::new(role.name(), PreflightVerdict::Failed, found, remedy)
+            PreflightCheck::failed(role.name(), found, remedy)
         }
         (None, Some(name)) => PreflightCheck::ok(role.name(), format!("{name} answers")),
         (None, None) => {
             let found = format!("no answer yet of {command}");
-            PreflightCheck::new(role.name(), PreflightVerdict::Warning, found, "wait until the program has started")
+            PreflightCheck::warning(role.name(), found, "wait until the program has started")
         }
     }
 }
@@ -124,7 +127,7 @@ fn tutorial(session: &Session) -> Option<PreflightCheck> {
     let (tutorial, page) = (session.foreign_tutorial()?, session.spec.display.code());
     let found = format!("in the language \"{}\", the page in \"{page}\"", tutorial.language);
     let remedy = format!("translate the plan's tutorial, and name the file as the plan's with .{page}.toml");
-    Some(PreflightCheck::new("tutorial", PreflightVerdict::Warning, found, remedy))
+    Some(PreflightCheck::warning("tutorial", found, remedy))
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -162,20 +165,11 @@ pub fn participant(
         GazeSource::None => checks.push(PreflightCheck::ok("gaze", "this session uses no gaze")),
         // The check of recorded gaze needs the file, which the session does not know.
         GazeSource::File => {}
-        GazeSource::Mouse => checks.extend(gaze(session, now, rejected)),
-        GazeSource::Json => {
+        source @ (GazeSource::Mouse | GazeSource::Json | GazeSource::Lsl | GazeSource::Pupil) => {
+            checks.extend((source == GazeSource::Lsl).then(|| stream(session)));
+            checks.extend((source == GazeSource::Pupil).then(|| tracker(session)));
             checks.extend(gaze(session, now, rejected));
-            checks.push(calibration(session, check_gaze));
-        }
-        GazeSource::Lsl => {
-            checks.push(stream(session));
-            checks.extend(gaze(session, now, rejected));
-            checks.push(calibration(session, check_gaze));
-        }
-        GazeSource::Pupil => {
-            checks.push(tracker(session));
-            checks.extend(gaze(session, now, rejected));
-            checks.push(calibration(session, check_gaze));
+            checks.extend((source != GazeSource::Mouse).then(|| calibration(session, check_gaze)));
         }
     }
     checks
@@ -195,7 +189,7 @@ pub fn recorded_gaze(file: &str, found: &RecordedGazeSummary) -> Vec<PreflightCh
         _ => (PreflightVerdict::Ok, ""),
     };
     let numbers = PreflightCheck::new("gaze", verdict, format!("{file}: {}", found.words()), remedy);
-    let odd = |remark: &String| PreflightCheck::new("gaze file", PreflightVerdict::Warning, remark, look);
+    let odd = |remark: &String| PreflightCheck::warning("gaze file", remark, look);
     [numbers].into_iter().chain(found.remarks.iter().map(odd)).collect()
 }
 
@@ -218,20 +212,16 @@ fn gaze(session: &Session, now: SessionTime, rejected: Option<&RejectedGaze>) ->
             let found = format!("{} arrived, and the last were no gaze samples", count(malformed, "line", "lines"));
             let remedy = "send a line for each sample: {\"x\": 0 to 1, \"y\": 0 to 1, \"confidence\": 0 to 1}, \"t\" \
                           in seconds if there is a clock";
-            return vec![PreflightCheck::new("gaze", PreflightVerdict::Failed, found, remedy)];
+            return vec![PreflightCheck::failed("gaze", found, remedy)];
         }
         if let Some(RejectedGaze { told, remedy }) = rejected {
-            return vec![PreflightCheck::new("gaze", PreflightVerdict::Failed, told.clone(), remedy.clone())];
+            return vec![PreflightCheck::failed("gaze", told.clone(), remedy.clone())];
         }
         return vec![PreflightCheck::new("gaze", verdict, "no gaze sample arrives", mends)];
     };
     let verdict = if hz < SLOW_HZ { PreflightVerdict::Warning } else { PreflightVerdict::Ok };
-    let rate = PreflightCheck::new(
-        "gaze",
-        verdict,
-        format!("{hz:.0} gaze samples a second"),
-        "use an eye tracker with 60 samples a second or more",
-    );
+    let found = format!("{hz:.0} gaze samples a second");
+    let rate = PreflightCheck::new("gaze", verdict, found, "use an eye tracker with 60 samples a second or more");
     let usable = session.gaze.last.filter(|(at, _)| now.secs_since(*at) <= UNUSABLE_S);
     let quality = match usable {
         Some((_, sample)) => {
@@ -246,7 +236,7 @@ fn gaze(session: &Session, now: SessionTime, rejected: Option<&RejectedGaze>) ->
             GazeSource::Lsl => "let the sender stamp each sample with LSL's clock when it is taken",
             _ => "send t in seconds of a clock, read when the sample is taken; or leave t out",
         };
-        checks.push(PreflightCheck::new("gaze times", PreflightVerdict::Warning, found, remedy));
+        checks.push(PreflightCheck::warning("gaze times", found, remedy));
     }
     checks.extend(stream_faults(session));
     checks
@@ -257,12 +247,10 @@ const OTHER_UNIT: f64 = 1.0;
 
 /// Why no sample of the last second was usable, told by the latest one.
 fn unusable(session: &Session) -> PreflightCheck {
-    let warning =
-        |found: String, remedy: String| PreflightCheck::new("gaze quality", PreflightVerdict::Warning, found, remedy);
     let tracker = "set up the eye tracker again, or calibrate it";
     let Some(GazeSample { x, y, confidence, .. }) = session.gaze.latest_unusable else {
         let found = "no gaze sample is on the display with enough confidence";
-        return warning(found.to_string(), tracker.to_string());
+        return PreflightCheck::warning("gaze quality", found, tracker);
     };
     let (mut found, mut remedies) = (Vec::new(), Vec::new());
     let source = session.spec.participant.gaze;
@@ -283,7 +271,8 @@ fn unusable(session: &Session) -> PreflightCheck {
         remedies.push(tracker);
         remedies.push("set missing_confidence = \"good\" under [tracker], if it knows no confidence");
     }
-    warning(format!("the last sample is not usable: {}", found.join("; ")), remedies.join("; "))
+    let found = format!("the last sample is not usable: {}", found.join("; "));
+    PreflightCheck::warning("gaze quality", found, remedies.join("; "))
 }
 
 /// Real gaze streams have some faulty samples; they are ignored, and matter only if there are many.
@@ -334,11 +323,11 @@ fn tracker(session: &Session) -> PreflightCheck {
                     ),
                 ),
             };
-            PreflightCheck::new(name, PreflightVerdict::Failed, found, remedy)
+            PreflightCheck::failed(name, found, remedy)
         }
         _ => {
             let remedy = format!("start Pupil Capture on {}, with Pupil Remote on port {}", spec.address, spec.port);
-            PreflightCheck::new(name, PreflightVerdict::Failed, "Pupil Capture does not answer", remedy)
+            PreflightCheck::failed(name, "Pupil Capture does not answer", remedy)
         }
     }
 }
@@ -348,7 +337,7 @@ fn stream(session: &Session) -> PreflightCheck {
     if let streams @ [_, _, ..] = &session.tracker.several_streams[..] {
         let found = format!("{} streams {wanted}: {}", streams.len(), streams.join("; "));
         let remedy = "set source_id or host under [lsl.gaze] to those of the tracker, or end the others";
-        return PreflightCheck::new("eye tracker", PreflightVerdict::Failed, found, remedy);
+        return PreflightCheck::failed("eye tracker", found, remedy);
     }
     let found = match &session.tracker.link {
         DeviceConnection::Connected { device } => return PreflightCheck::ok("eye tracker", device.clone()),
@@ -357,13 +346,13 @@ fn stream(session: &Session) -> PreflightCheck {
     };
     let remedy = "start the program that sends the stream, or set name, x, y and confidence under [lsl.gaze]; tomcom \
                   doctor lists streams and channels";
-    PreflightCheck::new("eye tracker", PreflightVerdict::Failed, found, remedy)
+    PreflightCheck::failed("eye tracker", found, remedy)
 }
 
 fn calibration(session: &Session, check_gaze: &str) -> PreflightCheck {
     let Some(accuracy_deg) = session.calibrated.as_ref().map(|checked| checked.accuracy_deg()) else {
         let remedy = format!("{check_gaze} checks gaze accuracy with targets (check_gaze in the key file)");
-        return PreflightCheck::new("calibration", PreflightVerdict::Warning, "gaze accuracy is not checked", remedy);
+        return PreflightCheck::warning("calibration", "gaze accuracy is not checked", remedy);
     };
     let verdict = match accuracy_deg {
         deg if deg <= GOOD_DEG => PreflightVerdict::Ok,

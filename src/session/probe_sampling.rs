@@ -22,9 +22,7 @@ use crate::Session;
 use crate::probe_settings::ProbeSpec;
 use crate::probes::{ProbeQuestion, ProbeSubject};
 use tomcom_core::base::rng::{Stream, shuffle, stream};
-use tomcom_core::kitchen::{
-    Agent, AspectId, AspectKind, Content, ContentId, DishId, Kitchen, LocationId, OrderContent, State,
-};
+use tomcom_core::kitchen::{Agent, AspectId, AspectKind, Content, ContentId, Kitchen, LocationId, OrderContent, State};
 
 const STRATA: usize = 4;
 /// Largest number of answers: a participant can read these in the time of a question.
@@ -217,10 +215,7 @@ fn question(session: &Session, id: AspectId, inclusion: f64, random: &mut Stream
 pub fn aspect(kitchen: &Kitchen, about: &ProbeSubject) -> Option<AspectId> {
     match about {
         ProbeSubject::Location { location } => kitchen.location_named(location).map(AspectId::of_location),
-        ProbeSubject::Recipe { dish } => {
-            let index = kitchen.dishes.iter().position(|known| known.name == *dish)?;
-            Some(kitchen.aspect_of_dish(DishId(index as u8)))
-        }
+        ProbeSubject::Recipe { dish } => kitchen.dish_named(dish).map(|dish| kitchen.aspect_of_dish(dish)),
         ProbeSubject::NextOrder | ProbeSubject::NextPress => None,
     }
 }

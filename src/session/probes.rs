@@ -22,12 +22,10 @@ use tomcom_core::base::time::SessionTime;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "did", rename_all = "snake_case")]
 pub enum ProbeEvent {
+    /// By the wizard.
     Requested,
     /// It is due but may not begin yet.
-    Delayed {
-        probe: u32,
-        reason: ProbeDelayReason,
-    },
+    Delayed { probe: u32, reason: ProbeDelayReason },
     /// It has waited for the longest allowed time, and is cancelled.
     Dropped {
         probe: u32,
@@ -43,10 +41,9 @@ pub enum ProbeEvent {
         /// In the order in which they are asked.
         questions: Vec<ProbeQuestion>,
     },
-    Asked {
-        probe: u32,
-        question: u32,
-    },
+    /// Its next question appears.
+    Asked { probe: u32, question: u32 },
+    /// The shown question gets an answer.
     Answered {
         probe: u32,
         question: u32,
@@ -59,19 +56,11 @@ pub enum ProbeEvent {
         on: AnswerDevice,
     },
     /// The wizard skips the remaining questions.
-    Skipped {
-        probe: u32,
-        reason: String,
-    },
+    Skipped { probe: u32, reason: String },
     /// No more questions are asked: the count-down begins, unless the trial is over.
-    Closed {
-        probe: u32,
-        reason: ProbeEndReason,
-    },
+    Closed { probe: u32, reason: ProbeEndReason },
     /// The task continues.
-    Ended {
-        probe: u32,
-    },
+    Ended { probe: u32 },
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -98,12 +87,10 @@ impl ProbeQuestion {
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(tag = "asks", rename_all = "snake_case")]
 pub enum ProbeSubject {
-    Location {
-        location: String,
-    },
-    Recipe {
-        dish: String,
-    },
+    /// What is there.
+    Location { location: String },
+    /// What belongs into the dish.
+    Recipe { dish: String },
     /// Which order will be served next.
     NextOrder,
     /// What the robot will press next.
@@ -137,12 +124,6 @@ pub enum ProbeOrigin {
     Wizard,
 }
 
-impl ProbeOrigin {
-    pub fn name(self) -> &'static str {
-        self.into()
-    }
-}
-
 /// Why a probe asks no more questions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
@@ -154,11 +135,9 @@ pub enum ProbeEndReason {
     TrialEnded,
 }
 
-impl ProbeEndReason {
-    pub fn name(self) -> &'static str {
-        self.into()
-    }
+named!(ProbeOrigin, ProbeEndReason);
 
+impl ProbeEndReason {
     pub fn words(self) -> &'static str {
         match self {
             ProbeEndReason::Answered => "all questions of the probe are answered",
@@ -462,10 +441,8 @@ pub(crate) fn admit(session: &Session, event: &ProbeEvent) -> Result<(), &'stati
 fn opened(session: &Session, probe: u32) -> Result<&StartedProbe, &'static str> {
     let open =
         session.probes.open.as_ref().filter(|open| open.number == probe).ok_or("this freeze probe is not running")?;
-    match open.closed.is_some() {
-        true => Err("the probe's questions are over"),
-        false => Ok(open),
-    }
+    unless(open.closed.is_none(), "the probe's questions are over")?;
+    Ok(open)
 }
 
 impl Session {
@@ -497,12 +474,15 @@ pub(crate) fn apply(session: &mut Session, now: SessionTime, event: &ProbeEvent)
     }
     match event {
         ProbeEvent::Requested => {
-            let number = session.probes.numbered + 1;
-            let uses_estimate = requested_uses_estimate(&session.spec, session.trial, number);
-            let since = session.trial_clock(now);
-            let (origin, reason) = (ProbeOrigin::Wizard, None);
-            session.probes.numbered = number;
-            session.probes.waiting = Some(WaitingProbe { number, origin, uses_estimate, since, reason });
+            session.probes.numbered += 1;
+            let number = session.probes.numbered;
+            session.probes.waiting = Some(WaitingProbe {
+                number,
+                origin: ProbeOrigin::Wizard,
+                uses_estimate: requested_uses_estimate(&session.spec, session.trial, number),
+                since: session.trial_clock(now),
+                reason: None,
+            });
         }
         ProbeEvent::Delayed { reason, .. } => {
             let mut waiting = take_due(session, now);

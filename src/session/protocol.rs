@@ -23,11 +23,9 @@ pub enum StudyPhase {
     Debriefing,
 }
 
-impl StudyPhase {
-    pub fn name(self) -> &'static str {
-        self.into()
-    }
+named!(StudyPhase);
 
+impl StudyPhase {
     /// As screens name it.
     pub fn title(self) -> &'static str {
         match self {
@@ -52,6 +50,7 @@ pub enum ProtocolEvent {
         text: String,
         digest: String,
     },
+    /// The next phase, after all that the present one needs.
     PhaseStarted {
         phase: StudyPhase,
         /// In the recording, from 1.
@@ -63,21 +62,17 @@ pub enum ProtocolEvent {
         step: usize,
         done: bool,
     },
+    /// In the participant's tutorial.
     Tutorial(TutorialEvent),
-    ItemShown {
-        item: String,
-    },
+    /// An item of the questionnaire.
+    ItemShown { item: String },
     /// All answers are shown, for the participant to confirm them.
     AnswersShown,
     /// A later answer replaces an earlier one. The next item follows at once, except after sliders and choices of
     /// several options.
-    ItemAnswered {
-        item: String,
-        answer: AnswerValue,
-    },
-    ItemSkipped {
-        item: String,
-    },
+    ItemAnswered { item: String, answer: AnswerValue },
+    /// The shown item stays without an answer.
+    ItemSkipped { item: String },
     /// The answers become final.
     AnswersConfirmed,
     /// Result of the practice trial.
@@ -89,9 +84,8 @@ pub enum ProtocolEvent {
         /// Among these presses.
         errors: u32,
     },
-    CriterionWaived {
-        reason: String,
-    },
+    /// The wizard goes on although the criterion is not met.
+    CriterionWaived { reason: String },
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -316,10 +310,7 @@ pub fn admit(session: &Session, event: &ProtocolEvent) -> Result<(), &'static st
 /// In a plan, only in the phase of the trial.
 pub(crate) fn admit_trial(session: &Session) -> Result<(), &'static str> {
     let has_trial = session.study_phase().is_some_and(|phase| phase.phase().has_trial());
-    match session.protocol.is_none() || has_trial {
-        true => Ok(()),
-        false => Err("this phase of the study has no trial"),
-    }
+    unless(session.protocol.is_none() || has_trial, "this phase of the study has no trial")
 }
 
 fn is_open(session: &Session) -> bool {
@@ -335,10 +326,8 @@ fn open_item<'a>(session: &'a Session, item: &str) -> Result<&'a Questionnaire, 
 fn shown_item<'a>(session: &'a Session, item: &str) -> Result<&'a Questionnaire, &'static str> {
     let questionnaire = open_item(session, item)?;
     let shown = session.protocol.as_ref().and_then(|protocol| questionnaire.items.get(protocol.item));
-    match shown.is_some_and(|shown| shown.id == item) {
-        true => Ok(questionnaire),
-        false => Err("another item of the questionnaire is shown"),
-    }
+    unless(shown.is_some_and(|shown| shown.id == item), "another item of the questionnaire is shown")?;
+    Ok(questionnaire)
 }
 
 pub(crate) fn apply(session: &mut Session, event: &ProtocolEvent, now: SessionTime) {

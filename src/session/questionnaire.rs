@@ -9,6 +9,8 @@ use crate::admit::unless;
 use crate::ranges;
 use crate::settings::{Condition, SettingError, is_code};
 
+/// Each option is chosen by a digit key.
+const MOST_OPTIONS: usize = 9;
 /// Largest length of a text answer, unless the item sets another one.
 const LENGTH: u32 = 200;
 
@@ -130,12 +132,7 @@ impl Questionnaire {
     pub fn position(&self, id: &str) -> Option<usize> {
         self.items.iter().position(|item| item.id == id)
     }
-}
 
-/// Each option is chosen by a digit key.
-const MOST_OPTIONS: usize = 9;
-
-impl Questionnaire {
     pub fn check(&self) -> Result<(), SettingError> {
         let wrong = |key: &str, found, remedy| Err(SettingError::new(key, found, remedy));
         if !is_code(&self.name) {
@@ -173,7 +170,8 @@ impl Questionnaire {
     /// An item has the settings that its kind needs, and no others.
     fn check_item(&self, item: &QuestionnaireItem) -> Result<(), WrongItem> {
         let kind = item.kind.unwrap_or(QuestionnaireItemKind::Scale);
-        if let Some((key, owner)) = OWNED.into_iter().find(|(key, owner)| *owner != kind && has(item, key)) {
+        let is_foreign = |(_, owner, is_there): &OwnedSetting| *owner != kind && is_there(item);
+        if let Some((key, owner, _)) = OWNED.into_iter().find(is_foreign) {
             return Err((key, format!("{key} in an item of the kind \"{}\"", kind.name()), remedy_for(owner)));
         }
         // Key of the line that the error message names if a setting is missing.
@@ -261,18 +259,20 @@ fn check_options(item: &QuestionnaireItem, line: &'static str) -> Result<(), Wro
     }
 }
 
-/// Settings that only one kind of item can have.
-const OWNED: [(&str, QuestionnaireItemKind); 10] = [
-    ("scale", QuestionnaireItemKind::Scale),
-    ("options", QuestionnaireItemKind::Choice),
-    ("several", QuestionnaireItemKind::Choice),
-    ("min", QuestionnaireItemKind::Number),
-    ("max", QuestionnaireItemKind::Number),
-    ("unit", QuestionnaireItemKind::Number),
-    ("length", QuestionnaireItemKind::Text),
-    ("low", QuestionnaireItemKind::Slider),
-    ("high", QuestionnaireItemKind::Slider),
-    ("step", QuestionnaireItemKind::Slider),
+/// A setting, the only kind of item that can have it, and whether an item has it in the file.
+type OwnedSetting = (&'static str, QuestionnaireItemKind, fn(&QuestionnaireItem) -> bool);
+
+const OWNED: [OwnedSetting; 10] = [
+    ("scale", QuestionnaireItemKind::Scale, |item| item.scale.is_some()),
+    ("options", QuestionnaireItemKind::Choice, |item| !item.options.is_empty()),
+    ("several", QuestionnaireItemKind::Choice, |item| item.several),
+    ("min", QuestionnaireItemKind::Number, |item| item.min.is_some()),
+    ("max", QuestionnaireItemKind::Number, |item| item.max.is_some()),
+    ("unit", QuestionnaireItemKind::Number, |item| item.unit.is_some()),
+    ("length", QuestionnaireItemKind::Text, |item| item.length.is_some()),
+    ("low", QuestionnaireItemKind::Slider, |item| item.low.is_some()),
+    ("high", QuestionnaireItemKind::Slider, |item| item.high.is_some()),
+    ("step", QuestionnaireItemKind::Slider, |item| item.step.is_some()),
 ];
 
 fn remedy_for(owner: QuestionnaireItemKind) -> &'static str {
@@ -285,21 +285,11 @@ fn remedy_for(owner: QuestionnaireItemKind) -> &'static str {
     }
 }
 
-/// Whether the item has this setting in the file.
+/// Whether the item has this setting in the file; every item has an id.
 fn has(item: &QuestionnaireItem, key: &str) -> bool {
-    match key {
-        "kind" => item.kind.is_some(),
-        "scale" => item.scale.is_some(),
-        "options" => !item.options.is_empty(),
-        "several" => item.several,
-        "min" => item.min.is_some(),
-        "max" => item.max.is_some(),
-        "unit" => item.unit.is_some(),
-        "length" => item.length.is_some(),
-        "low" => item.low.is_some(),
-        "high" => item.high.is_some(),
-        "step" => item.step.is_some(),
-        _ => true,
+    match OWNED.into_iter().find(|(owned, ..)| *owned == key) {
+        Some((.., is_there)) => is_there(item),
+        None => key == "id" || item.kind.is_some(),
     }
 }
 
@@ -365,11 +355,7 @@ pub enum AnswerFormat<'a> {
     },
 }
 
-impl QuestionnaireItemKind {
-    pub fn name(self) -> &'static str {
-        self.into()
-    }
-}
+named!(QuestionnaireItemKind);
 
 impl<'a> AnswerFormat<'a> {
     /// Least and greatest answer on a rating scale or slider, to reverse an answer.

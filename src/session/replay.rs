@@ -121,10 +121,7 @@ impl SameKitchenCheck {
 
     /// It is an error if no recording was admitted.
     pub fn kitchen(self) -> FileResult<Arc<Kitchen>> {
-        let none = || {
-            let remedy = "at least one recording".to_string();
-            FileError::from_finding(Path::new("."), "no recording".to_string(), remedy)
-        };
+        let none = || FileError::from_finding(Path::new("."), "no recording", "at least one recording");
         self.first.map(|(_, kitchen)| kitchen).ok_or_else(none)
     }
 }
@@ -142,8 +139,4 @@ pub enum ReplayLandmark {
     FalseBelief,
 }
 
-impl ReplayLandmark {
-    pub fn name(self) -> &'static str {
-        self.into()
-    }
-}
+named!(ReplayLandmark);

@@ -21,10 +21,7 @@ use tomcom_core::communication::{HighlightSet, Sender, Signal};
 use tomcom_core::kitchen::rules::NoEffectReason;
 use tomcom_core::kitchen::state::MAX_LOCATIONS;
 use tomcom_core::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, State};
-use tomcom_core::robot::ArmSample;
-use tomcom_core::robot::ArmStage;
-use tomcom_core::robot::SafetyMode;
-use tomcom_core::robot::{AbortReason, IdleReason};
+use tomcom_core::robot::{AbortReason, ArmSample, ArmStage, IdleReason, SafetyMode};
 use tomcom_people::wizard::WizardKind;
 
 /// Time without a sample after which gaze counts as missing.
@@ -280,6 +277,24 @@ impl Session {
         self.phase == TrialPhase::Running
     }
 
+    /// Whose press changed a location at this time.
+    pub fn changed_by(&self, at: SessionTime) -> Option<Agent> {
+        let since = self.timeline.iter().rev().take_while(|entry| entry.time >= at);
+        since.filter(|entry| entry.time == at).find_map(|entry| match entry.what {
+            TimelineEvent::Press { agent, no_effect: None, .. } => Some(agent),
+            _ => None,
+        })
+    }
+
+    /// Whether the location changed without a press of the human, and the participant has not looked there since: a
+    /// fact, not an estimate.
+    pub fn is_unseen(&self, location: LocationId) -> bool {
+        let at = self.changed_at[location.index()];
+        let seen = self.gaze.looked_at[location.index()].is_some_and(|seen| seen >= at);
+        let knows = seen || self.gaze.samples == 0 || at == SessionTime::ZERO;
+        !knows && self.changed_by(at) != Some(Agent::Human)
+    }
+
     pub(crate) fn note(&mut self, time: SessionTime, what: TimelineEvent) {
         let entry = TimelineEntry { time, what };
         self.order_work.follow(&self.kitchen, std::slice::from_ref(&entry));
@@ -369,10 +384,8 @@ pub struct ArmStatus {
 impl ArmStatus {
     /// In which stage beside `ready` a real arm is, and what was found; `None` if it is ready, or is no real one.
     pub fn unready(&self) -> Option<(ArmStage, &str)> {
-        self.stage
-            .as_ref()
-            .filter(|(stage, _)| *stage != ArmStage::Ready)
-            .map(|(stage, found)| (*stage, found.as_str()))
+        let (stage, found) = self.stage.as_ref()?;
+        (*stage != ArmStage::Ready).then_some((*stage, found.as_str()))
     }
 }
 
@@ -408,25 +421,5 @@ impl RobotStatus {
         self.driven_to = None;
         self.idle = None;
         self.gave_up = None;
-    }
-}
-
-impl Session {
-    /// Whose press changed a location at this time.
-    pub fn changed_by(&self, at: SessionTime) -> Option<Agent> {
-        let since = self.timeline.iter().rev().take_while(|entry| entry.time >= at);
-        since.filter(|entry| entry.time == at).find_map(|entry| match entry.what {
-            TimelineEvent::Press { agent, no_effect: None, .. } => Some(agent),
-            _ => None,
-        })
-    }
-
-    /// Whether the location changed without a press of the human, and the participant has not looked there since: a
-    /// fact, not an estimate.
-    pub fn is_unseen(&self, location: LocationId) -> bool {
-        let at = self.changed_at[location.index()];
-        let seen = self.gaze.looked_at[location.index()].is_some_and(|seen| seen >= at);
-        let knows = seen || self.gaze.samples == 0 || at == SessionTime::ZERO;
-        !knows && self.changed_by(at) != Some(Agent::Human)
     }
 }

@@ -185,7 +185,7 @@ impl SessionSpec {
             Err(SettingError::new("signals.highlights", format!("highlights = {named:?}, {what}"), remedy))
         };
         if let Some(name) = named.iter().find(|name| !kitchen.location_named(name).is_some_and(can_be)) {
-            let places = (0..kitchen.locations.len()).map(|index| LocationId(index as u8)).filter(|&id| can_be(id));
+            let places = kitchen.location_ids().filter(|&id| can_be(id));
             let places: Vec<&str> = places.map(|id| &*kitchen.location(id).name).collect();
             let near = did_you_mean(name, &places);
             return wrong(format!("and {name} cannot be highlighted{near}"), format!("some of: {}", places.join(", ")));
@@ -323,11 +323,7 @@ pub enum Condition {
     Assistant,
 }
 
-impl Condition {
-    pub fn name(self) -> &'static str {
-        self.into()
-    }
-}
+named!(Condition, ParticipantKind, WizardVisibility, ArmKind);
 
 const LOCALHOST: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
 
@@ -359,9 +355,8 @@ pub struct ParticipantSpec {
 
 impl Default for ParticipantSpec {
     fn default() -> Self {
-        let code = "P01".to_string();
         ParticipantSpec {
-            code,
+            code: "P01".to_string(),
             kind: ParticipantKind::Simulated,
             gaze: GazeSource::Simulated,
             gaze_port: 50021,
@@ -397,8 +392,9 @@ impl ParticipantSpec {
 }
 
 /// Who takes the human's part.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum ParticipantKind {
     Simulated,
     /// A person at the keyboard of the console.
@@ -410,16 +406,6 @@ pub enum ParticipantKind {
 }
 
 impl ParticipantKind {
-    /// As in session files and on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            ParticipantKind::Simulated => "simulated",
-            ParticipantKind::Keyboard => "keyboard",
-            ParticipantKind::Display => "display",
-            ParticipantKind::External => "external",
-        }
-    }
-
     pub fn words(self) -> &'static str {
         match self {
             ParticipantKind::Simulated => "simulated participant",
@@ -609,10 +595,6 @@ pub enum WizardVisibility {
 }
 
 impl WizardVisibility {
-    pub fn name(self) -> &'static str {
-        self.into()
-    }
-
     pub fn title(self) -> &'static str {
         match self {
             WizardVisibility::State => "kitchen and gaze",
@@ -638,10 +620,6 @@ pub enum ArmKind {
 }
 
 impl ArmKind {
-    pub fn name(self) -> &'static str {
-        self.into()
-    }
-
     /// Whether it has joints and touches what it presses, simulated or real.
     pub fn has_joints(self) -> bool {
         self != ArmKind::Timed

@@ -1,6 +1,7 @@
 //! Settings of streams in a session file: the Lab Streaming Layer (LSL) and the 3D viewer Rerun.
 
 use serde::{Deserialize, Serialize};
+use strum::{IntoStaticStr, VariantArray};
 
 use crate::settings::SettingError;
 
@@ -18,7 +19,7 @@ pub struct LslSpec {
     pub gaze: Option<LslGazeSpec>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, strum::IntoStaticStr)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, IntoStaticStr, VariantArray)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum LslOutlet {
@@ -37,23 +38,7 @@ pub enum LslOutlet {
     Arm,
 }
 
-impl LslOutlet {
-    /// In the order of the documentation.
-    pub const ALL: [LslOutlet; 7] = [
-        LslOutlet::Markers,
-        LslOutlet::Events,
-        LslOutlet::Presses,
-        LslOutlet::Beliefs,
-        LslOutlet::NetBenefit,
-        LslOutlet::Gaze,
-        LslOutlet::Arm,
-    ];
-
-    /// In settings, and part of its name in the layer.
-    pub fn name(self) -> &'static str {
-        self.into()
-    }
-}
+named!(LslOutlet);
 
 /// How a stream of gaze on the display is found (`None`: whatever it is), and the meaning of its channels.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -31,6 +31,8 @@ pub enum StudyArm {
     External,
 }
 
+named!(StudyArm);
+
 impl StudyArm {
     /// In the order of tables.
     pub const ALL: [StudyArm; 7] = [
@@ -42,11 +44,6 @@ impl StudyArm {
         StudyArm::Dev,
         StudyArm::External,
     ];
-
-    /// In files.
-    pub fn name(self) -> &'static str {
-        self.into()
-    }
 
     /// In texts.
     pub fn title(self) -> &'static str {

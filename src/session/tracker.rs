@@ -2,12 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::admit::unless;
 use crate::settings::{GazeSource, SettingError};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::device_clock::StampFault;
 use tomcom_core::gaze::quality::DroppedInputCounts;
-use tomcom_core::gaze::tags::SurfaceHomography;
-use tomcom_core::gaze::tags::{DisplayTags, TagError};
+use tomcom_core::gaze::tags::{DisplayTags, SurfaceHomography, TagError};
 use tomcom_core::kitchen::Kitchen;
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -73,11 +73,10 @@ pub struct GazeGapSpec {
 
 impl Default for TrackerSpec {
     fn default() -> Self {
-        let (address, surface) = ("127.0.0.1".to_string(), "wall".to_string());
         TrackerSpec {
-            address,
+            address: "127.0.0.1".to_string(),
             port: 50020,
-            surface,
+            surface: "wall".to_string(),
             corners: None,
             record: true,
             file: None,
@@ -222,13 +221,10 @@ pub enum DeviceConnection {
     /// No message has been received yet.
     #[default]
     Unknown,
-    Connected {
-        device: String,
-    },
-    Lost {
-        since: SessionTime,
-        reason: String,
-    },
+    /// By its name or path.
+    Connected { device: String },
+    /// Why, and since when.
+    Lost { since: SessionTime, reason: String },
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -298,8 +294,5 @@ pub(super) fn admit(event: &TrackerEvent) -> Result<(), &'static str> {
         TrackerEvent::Stamps { fault: Some(StampFault::Rate(rate)) } => vec![*rate],
         _ => Vec::new(),
     };
-    match numbers.iter().all(|number| number.is_finite()) {
-        true => Ok(()),
-        false => Err("what the tracker tells is not a number"),
-    }
+    unless(numbers.iter().all(|number| number.is_finite()), "what the tracker tells is not a number")
 }

@@ -12,7 +12,7 @@ use crate::settings::{SettingError, is_code};
 use crate::{Session, probe_sampling};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::rules::NoEffectReason;
-use tomcom_core::kitchen::{Agent, AspectId, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
+use tomcom_core::kitchen::{Agent, AspectId, ButtonId, Kitchen, LocationId, OrderContent, State};
 
 /// For recipe cards, in seconds.
 const LONGEST_S: f64 = 3600.0;
@@ -142,7 +142,8 @@ impl Tutorial {
             for &order in &kitchen.orders {
                 state.set_order(order, OrderContent::None);
             }
-            if let (Some(&order), Some(dish)) = (kitchen.orders.first(), dish_of(kitchen, one)) {
+            let dish = one.dish.as_ref().and_then(|dish| kitchen.dish_named(dish));
+            if let (Some(&order), Some(dish)) = (kitchen.orders.first(), dish) {
                 state.set_order(order, OrderContent::Dish(dish));
             }
             // What the robot shows is no work on the kitchen: it shows it again and again.
@@ -238,10 +239,6 @@ fn without(names: &[String], at: usize) -> Vec<String> {
     [&names[..at], &names[at + 1..]].concat()
 }
 
-fn dish_of(kitchen: &Kitchen, step: &TutorialStep) -> Option<DishId> {
-    kitchen.dish_named(step.dish.as_ref()?)
-}
-
 /// At the step's id in the file, which every step has exactly once.
 fn placed(error: SettingError, nth: usize, step: &TutorialStep) -> SettingError {
     let found = format!("step \"{}\": {}", step.id, error.found);
@@ -252,19 +249,12 @@ fn check_step(step: &TutorialStep) -> Result<(), SettingError> {
     use TutorialStepKind::{Order, Press, Probe, Question, Recipes, Robot, Signal, Text};
     let wrong = |key: &str, found: String, remedy: &'static str| Err(SettingError::new(key, found, remedy));
     let kind = step.kind;
+    let may_have_dish = matches!(kind, Order | Probe | Signal | Text);
+    let must_have_dish = kind == Order || (kind == Signal && step.highlight.is_none());
+    let has_buttons = matches!(kind, Press | Order | Robot);
     let given = [
-        (
-            "presses",
-            !step.presses.is_empty(),
-            matches!(kind, Press | Order | Robot),
-            matches!(kind, Press | Order | Robot),
-        ),
-        (
-            "dish",
-            step.dish.is_some(),
-            matches!(kind, Order | Probe | Signal | Text),
-            kind == Order || (kind == Signal && step.highlight.is_none()),
-        ),
+        ("presses", !step.presses.is_empty(), has_buttons, has_buttons),
+        ("dish", step.dish.is_some(), may_have_dish, must_have_dish),
         ("highlight", step.highlight.is_some(), kind == Signal && step.dish.is_none(), false),
         ("hints", step.hints.is_some(), kind == Order, false),
         ("hint_after_s", step.hint_after_s.is_some(), kind == Order, false),
@@ -276,19 +266,15 @@ fn check_step(step: &TutorialStep) -> Result<(), SettingError> {
     ];
     for (key, is_there, may, must) in given {
         if is_there && !may {
-            return wrong(
-                key,
-                format!("`{key}`, which has no meaning in it"),
-                "only the settings of the step's kind: docs/display.md",
-            );
+            let remedy = "only the settings of the step's kind: docs/display.md";
+            return wrong(key, format!("`{key}`, which has no meaning in it"), remedy);
         }
         if must && !is_there {
             return wrong(key, format!("no `{key}`"), "all settings of the step's kind: docs/display.md");
         }
     }
-    let is_time = |seconds: &f64| (0.0..=LONGEST_S).contains(seconds);
     for (key, value) in [("seconds", step.seconds), ("hint_after_s", step.hint_after_s)] {
-        if let Some(value) = value.filter(|value| !is_time(value)) {
+        if let Some(value) = value.filter(|value| !(0.0..=LONGEST_S).contains(value)) {
             return wrong(key, format!("{key} = {value}"), "0 to 3600 seconds");
         }
     }
@@ -297,10 +283,8 @@ fn check_step(step: &TutorialStep) -> Result<(), SettingError> {
         return wrong("choices", format!("{choices} choices"), "two to nine");
     }
     match step.right.filter(|&right| right == 0 || usize::from(right) > choices) {
-        Some(right) if kind == Question => {
-            wrong("right", format!("right = {right}"), "the number of a choice, 1 the first")
-        }
-        _ => Ok(()),
+        Some(right) => wrong("right", format!("right = {right}"), "the number of a choice, 1 the first"),
+        None => Ok(()),
     }
 }
 
@@ -314,11 +298,9 @@ fn check_names(kitchen: &Kitchen, step: &TutorialStep) -> Result<(), SettingErro
         return wrong("point_at", format!("point_at \"{name}\""), remedy);
     }
     if let Some(name) = step.presses.iter().find(|name| !is_button(name)) {
-        return wrong(
-            "presses",
-            format!("the button \"{name}\""),
-            "a button of the human, or with kind = \"robot\" of the robot, as tomcom kitchen LAYOUT lists them",
-        );
+        let remedy =
+            "a button of the human, or with kind = \"robot\" of the robot, as tomcom kitchen LAYOUT lists them";
+        return wrong("presses", format!("the button \"{name}\""), remedy);
     }
     if let Some(name) = step.dish.as_ref().filter(|name| kitchen.dish_named(name).is_none()) {
         return wrong("dish", format!("the dish \"{name}\""), "a dish of the kitchen's menu");
@@ -364,36 +346,26 @@ pub enum TutorialPageTurner {
     Wizard,
 }
 
-impl TutorialPageTurner {
-    pub fn name(self) -> &'static str {
-        self.into()
-    }
-}
+named!(TutorialPageTurner);
 
 /// Presses act on a kitchen of the tutorial's own: they are no presses of a trial, and no evidence of beliefs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "did", rename_all = "snake_case")]
 pub enum TutorialEvent {
-    Shown {
-        step: String,
-        by: TutorialPageTurner,
-    },
-    Pressed {
-        button: String,
-    },
+    /// A step before or after the present one.
+    Shown { step: String, by: TutorialPageTurner },
+    /// In the tutorial's own kitchen.
+    Pressed { button: String },
     /// The set time of the recipe cards is over: they disappear.
-    CardsHidden {
-        step: String,
-    },
+    CardsHidden { step: String },
+    /// A question or a practised probe.
     Answered {
         step: String,
         /// From 1; 0: "I don't know", of a practised probe.
         choice: u8,
     },
     /// The participant read the last step, or the wizard skipped the rest.
-    Ended {
-        by: TutorialPageTurner,
-    },
+    Ended { by: TutorialPageTurner },
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -407,7 +379,7 @@ pub struct TutorialPress {
     pub no_effect: Option<(NoEffectReason, LocationId)>,
 }
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct TutorialState {
     /// Index of the shown step.
     pub step: usize,
@@ -441,19 +413,11 @@ impl TutorialState {
     pub fn new(tutorial: &Tutorial, kitchen: &Kitchen, now: SessionTime) -> TutorialState {
         let steps = tutorial.steps.len();
         let mut state = TutorialState {
-            step: 0,
             shown_since: now,
             shown_before: vec![SessionTime::ZERO; steps],
-            kitchen: kitchen.empty_state(),
-            presses: 0,
-            left: Vec::new(),
-            last: None,
-            pressed: 0,
-            are_cards_hidden: false,
-            wrong: None,
             done: vec![false; steps],
             wrong_answers: vec![0; steps],
-            is_over: false,
+            ..TutorialState::default()
         };
         state.show(tutorial, kitchen, 0, now);
         state
@@ -473,12 +437,11 @@ impl TutorialState {
         // Recipe cards that were shown for their time are not shown again when the participant goes back in the
         // tutorial: the recipes have to be remembered.
         self.are_cards_hidden = tutorial.steps.get(step).is_some_and(TutorialStep::is_timed) && self.is_done();
+        use TutorialStepKind::{Order, Press, Probe, Question, Recipes, Robot, RobotSays, Signal, Text};
         let needs_nothing = tutorial.steps.get(step).is_some_and(|step| match step.kind {
-            TutorialStepKind::Text | TutorialStepKind::Signal => true,
-            TutorialStepKind::Robot | TutorialStepKind::RobotSays => true,
-            TutorialStepKind::Recipes => !step.is_timed(),
-            TutorialStepKind::Press | TutorialStepKind::Order => false,
-            TutorialStepKind::Question | TutorialStepKind::Probe => false,
+            Text | Signal | Robot | RobotSays => true,
+            Recipes => !step.is_timed(),
+            Press | Order | Question | Probe => false,
         });
         self.finish(needs_nothing);
     }
@@ -537,12 +500,6 @@ impl TutorialState {
             *count += u32::from(!is_right);
         }
         self.finish(is_right);
-    }
-
-    /// They were shown for their set time.
-    fn hide_cards(&mut self) {
-        self.are_cards_hidden = true;
-        self.finish(true);
     }
 
     fn finish(&mut self, is_done: bool) {
@@ -656,7 +613,10 @@ pub(crate) fn apply(session: &mut Session, event: &TutorialEvent, now: SessionTi
                 state.press(kitchen, button);
             }
         }
-        TutorialEvent::CardsHidden { .. } => state.hide_cards(),
+        TutorialEvent::CardsHidden { .. } => {
+            state.are_cards_hidden = true;
+            state.finish(true);
+        }
         TutorialEvent::Answered { choice, .. } => {
             let is_right = match session.practised_question() {
                 Some((question, truth)) => {

@@ -14,8 +14,7 @@ use crate::files::file_error::{FileError, FileResult};
 use crate::follower::SessionFollower;
 use crate::log::{LogEnding, LogLine, LogReader, event_line};
 use crate::{Event, TimestampedEvent};
-use tomcom_core::base::text::PathText;
-use tomcom_core::base::text::count;
+use tomcom_core::base::text::{PathText, count};
 use tomcom_core::communication::recommendation::Recommendation;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 

@@ -127,11 +127,7 @@ pub enum RobotDepiction {
     Arm,
 }
 
-impl RobotDepiction {
-    pub fn name(self) -> &'static str {
-        self.into()
-    }
-}
+named!(RobotDepiction);
 
 /// Where answers of the participant are entered, and by whom.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -147,10 +143,9 @@ pub enum AnswerDevice {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "what", rename_all = "snake_case")]
 pub enum DisplayEvent {
-    Connected {
-        width_px: u32,
-        height_px: u32,
-    },
+    /// The page that takes part, with its size.
+    Connected { width_px: u32, height_px: u32 },
+    /// The page that took part.
     Lost,
     /// The page has drawn a frame with the flash for an event (trial start, signal, trial end).
     Drawn {

@@ -11,10 +11,11 @@ use tomcom_core::base::text::{PathText, count};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::measures::raters::CodableErrors;
 use tomcom_session::files::file_error::FileResult;
-use tomcom_session::log::{ANNOTATION_NAMES, rater_codes, video_file};
+use tomcom_session::log::video_file::{self, AttachedFilm};
+use tomcom_session::log::{ANNOTATION_NAMES, rater_codes};
 use tomcom_session::replay::RecordingReplay;
 
-/// A kind of annotation file.
+/// A kind of annotation file, in the order of [`ANNOTATION_NAMES`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AnnotationFormat {
     Elan,
@@ -23,25 +24,12 @@ pub enum AnnotationFormat {
 }
 
 impl AnnotationFormat {
-    /// Name of the file, beside the log.
-    fn file_name(self) -> &'static str {
-        ANNOTATION_NAMES[self as usize]
-    }
-
-    fn text(self, annotations: &RecordingAnnotations) -> String {
+    /// The text of the file; and what is near its beginning until another program saves it.
+    fn text(self, annotations: &RecordingAnnotations) -> (String, &'static str) {
         match self {
-            AnnotationFormat::Elan => elan::text(annotations),
-            AnnotationFormat::Boris => boris::text(annotations),
-            AnnotationFormat::Vtt => vtt::text(annotations),
-        }
-    }
-
-    /// What is in a file of this format, near its beginning, until another program saves it.
-    fn untouched(self) -> &'static str {
-        match self {
-            AnnotationFormat::Elan => elan::UNTOUCHED,
-            AnnotationFormat::Boris => boris::UNTOUCHED,
-            AnnotationFormat::Vtt => vtt::UNTOUCHED,
+            AnnotationFormat::Elan => (elan::text(annotations), elan::UNTOUCHED),
+            AnnotationFormat::Boris => (boris::text(annotations), boris::UNTOUCHED),
+            AnnotationFormat::Vtt => (vtt::text(annotations), vtt::UNTOUCHED),
         }
     }
 }
@@ -71,18 +59,16 @@ pub fn export(recording: &Path, formats: &[AnnotationFormat], blind: bool) -> Fi
     let kitchen = &replay.session().kitchen;
     let codes = rater_codes::read_all(&folder, &CodableErrors::from_presses(kitchen, &replay.follower.judged))?;
     let whole = annotation_files::whole(&folder)?;
-    let films = video_file::read(&folder)?
-        .films
-        .into_iter()
-        .map(|film| (film.path(&whole).to_string_lossy().into_owned(), film));
-    let films: Vec<_> = films.collect();
+    let path = |film: AttachedFilm| (film.path(&whole).to_string_lossy().into_owned(), film);
+    let films: Vec<_> = video_file::read(&folder)?.films.into_iter().map(path).collect();
     let name = whole.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let annotations = collector.finish(&replay.follower, (name, started), &codes, &films, blind);
     let number: usize = annotations.tiers.iter().map(|tier| tier.annotations.len()).sum();
     let mut summaries = Vec::new();
     for &format in formats {
-        let file = folder.join(format.file_name());
-        annotation_files::write(&file, &format.text(&annotations), format.untouched())?;
+        let file = folder.join(ANNOTATION_NAMES[format as usize]);
+        let (text, untouched) = format.text(&annotations);
+        annotation_files::write(&file, &text, untouched)?;
         summaries.push(AnnotationSummary {
             file: file.into(),
             annotations: number as u64,

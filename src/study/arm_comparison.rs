@@ -257,6 +257,13 @@ fn doubt(
     (few_events.is_some() || other_ratio.is_some()).then_some(ContrastDoubt { few_events, other_ratio })
 }
 
+impl StudyArmComparison {
+    /// As [`StudyArmCounts::per_100`]; NaN of an arm without trials.
+    pub fn per_100(&self, arm: StudyArm) -> f64 {
+        self.arms.iter().find(|counts| counts.arm == arm).map_or(f64::NAN, StudyArmCounts::per_100)
+    }
+}
+
 impl NegativeBinomialComparison {
     /// The same contrast by this model.
     pub fn of(&self, contrast: &StudyArmContrast) -> Option<&NegativeBinomialContrast> {

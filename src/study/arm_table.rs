@@ -20,6 +20,18 @@ pub struct StudyArmStatistic {
     pub interval: Option<[f64; 2]>,
 }
 
+impl StudyArmStatistic {
+    /// "5.1 (4.2 to 6.3)", or "-".
+    pub(crate) fn in_words(self, scale: f64, digits: usize) -> String {
+        let Some(value) = self.value else { return "-".to_string() };
+        let value = format!("{:.digits$}", scale * value);
+        match self.interval {
+            Some([low, high]) => format!("{value} ({:.digits$} to {:.digits$})", scale * low, scale * high),
+            None => value,
+        }
+    }
+}
+
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StudyArmRow {
     pub arm: StudyArm,
@@ -127,25 +139,16 @@ pub fn describe(table: &StudyArmTable) -> String {
     text += "|---|---|---|---|---|---|---|---|\n";
     for row in &table.arms {
         let cells = [
-            number(&row.errors_per_100, 1.0, 1),
-            number(&row.related_per_100, 1.0, 1),
-            number(&row.sequence_length, 1.0, 2),
-            number(&row.orders_per_minute, 1.0, 2),
-            number(&row.signals_per_100, 1.0, 1),
-            number(&row.signal_time, 100.0, 1),
+            row.errors_per_100.in_words(1.0, 1),
+            row.related_per_100.in_words(1.0, 1),
+            row.sequence_length.in_words(1.0, 2),
+            row.orders_per_minute.in_words(1.0, 2),
+            row.signals_per_100.in_words(1.0, 1),
+            row.signal_time.in_words(100.0, 1),
         ];
         text += &format!("| {} | {} | {} |\n", row.arm.name(), row.trials, cells.join(" | "));
     }
     text += "\nper 100 presses of the human; in brackets intervals of 95 %, by a bootstrap over participants\n";
     let without = table.arms.iter().any(|row| row.sequence_length.value.is_none());
     text + if without { "-: no sequence of errors\n" } else { "" }
-}
-
-fn number(figure: &StudyArmStatistic, scale: f64, digits: usize) -> String {
-    let Some(value) = figure.value else { return "-".to_string() };
-    let value = format!("{:.digits$}", scale * value);
-    match figure.interval {
-        Some([low, high]) => format!("{value} ({:.digits$} to {:.digits$})", scale * low, scale * high),
-        None => value,
-    }
 }

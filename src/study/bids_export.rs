@@ -19,7 +19,6 @@ use crate::kept_cost::KeptCost;
 use crate::pass::reading;
 use crate::planned_trial::{ForeignRecording, RecordingCopy, left_out_in_words};
 use crate::standing;
-use crate::trial_statistics::kind_name;
 use tomcom_core::base::text::{PathText, count};
 use tomcom_core::kitchen::KitchenChange;
 use tomcom_core::measures::errors::PressJudge;
@@ -202,7 +201,7 @@ fn participants(planned: &[Planned]) -> FileResult<Vec<BidsParticipant>> {
             None => rows.push(BidsParticipant {
                 label: one.label.clone(),
                 code: spec.participant.code.clone(),
-                kind: kind_name(spec.participant.kind).to_string(),
+                kind: spec.participant.kind.name().to_string(),
                 group: spec.step.as_ref().map(|step| step.group.clone()),
                 recordings: 1,
                 consent: consent.unwrap_or_default(),

@@ -78,10 +78,11 @@ pub(crate) fn improvements(trials: &[TrialStatistics]) -> Option<Markup> {
     let mut chart =
         SvgChart::new(WIDTH, 320.0, PlotAxis::named(&names), PlotAxis::over("fewer errors in the second trial", all));
     for (x, assisted_second) in [(0.0, true), (1.0, false)] {
+        let class = if assisted_second { "second" } else { "first" };
         let of_group: Vec<&TrialPair> = pairs.iter().filter(|pair| pair.assisted_second == assisted_second).collect();
         for (index, pair) in of_group.iter().enumerate() {
             let y = percent(pair.improvement());
-            chart.point(group_class(pair), x + aside(index), y, &format!("{}: {y:+.1}", pair.participant));
+            chart.point(class, x + aside(index), y, &format!("{}: {y:+.1}", pair.participant));
         }
         if let Some(mean) = mean(of_group.iter().map(|pair| percent(pair.improvement()))) {
             chart.line("mean", &[(x - 0.25, mean), (x + 0.25, mean)]);
@@ -219,10 +220,6 @@ pub(crate) fn probe_calibration(found: &ProbeSummary) -> Option<Markup> {
         chart.point("tom-com", bin.predicted, bin.observed, &title);
     }
     Some(chart.finish("Calibration of the estimate by answers to probes"))
-}
-
-fn group_class(pair: &TrialPair) -> &'static str {
-    if pair.assisted_second { "second" } else { "first" }
 }
 
 fn percent(rate: f64) -> f64 {

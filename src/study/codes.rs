@@ -290,6 +290,14 @@ pub fn describe(figures: &InterRaterSummary) -> String {
             number(kappa_aspect),
         );
     }
+    let pairs = figures.agreements.iter().chain(&figures.known).map(|pair| &pair.agreement);
+    let kappas: Vec<Option<f64>> = pairs.flat_map(|found| [found.kappa_cause, found.kappa_aspect]).collect();
+    if kappas.contains(&None) {
+        text += "  kappa -: both give one code only, or no error has codes of both\n";
+    }
+    if kappas.iter().flatten().any(|kappa| *kappa < 0.005) {
+        text += "  kappa 0.00 or below: they agree no more than by chance, as where one gives one code only\n";
+    }
     text + &describe_disagreements(figures)
 }
 
@@ -518,28 +526,22 @@ impl CodedRecording {
     fn settle(&mut self, raters: &[String; 2], press: u64, code: &ErrorCauseCode) -> Result<(), (String, String)> {
         let new = RaterConsensus::new(&raters[0], &raters[1]);
         let own = new.raters.clone().map(|rater| self.codes.get(&rater).cloned().unwrap_or_default());
+        let both = new.raters.join(" and ");
         if let Some(rater) = new.without_codes(own.each_ref()) {
-            let remedy = "raters who have both coded errors of this recording, each alone".to_string();
-            return Err((
-                format!("a consensus of {}, while {rater} has coded nothing", new.raters.join(" and ")),
-                remedy,
-            ));
+            let found = format!("a consensus of {both}, while {rater} has coded nothing");
+            return Err((found, "raters who have both coded errors of this recording, each alone".to_string()));
         }
         let consensus = self.consensus.take().unwrap_or_else(|| new.clone());
         if consensus.raters != new.raters {
-            let remedy = format!(
-                "the consensus of {}, who settled this recording; or delete this consensus first",
-                consensus.name()
-            );
-            return Err((format!("the consensus of {}", new.raters.join(" and ")), remedy));
+            let name = consensus.name();
+            let remedy = format!("the consensus of {name}, who settled this recording; or delete this consensus first");
+            return Err((format!("the consensus of {both}"), remedy));
         }
         let decided = RaterCodes([(press, code.clone())].into());
         let consensus = consensus.with_agreed(own.each_ref()).with_decided(&decided, own.each_ref());
         if let Some(remedy) = consensus.settled.get(&press).and_then(|settled| settled.fault()) {
-            return Err((
-                format!("press {press} with another cause than the one that both raters gave"),
-                remedy.to_string(),
-            ));
+            let found = format!("press {press} with another cause than the one that both raters gave");
+            return Err((found, remedy.to_string()));
         }
         self.consensus = Some(consensus);
         Ok(())

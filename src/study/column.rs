@@ -57,29 +57,28 @@ pub type Levels = &'static [(&'static str, &'static str)];
 
 pub struct TableColumn<Row> {
     pub name: Cow<'static, str>,
-    /// Empty: none.
-    pub unit: &'static str,
-    /// Empty if the values are not from a list.
-    pub levels: Levels,
+    pub values: ColumnValues,
     pub meaning: Cow<'static, str>,
     value: Box<dyn Fn(&Row) -> TableCell<'_>>,
 }
 
-/// What the values of a column are: numbers of a unit (or texts, for which it is empty), or some of a list.
-pub enum ColumnValues {
-    Unit(&'static str),
-    Levels(Levels),
+/// What the values of a column are: numbers of a unit, some of a list, or texts.
+pub struct ColumnValues {
+    /// Empty: none.
+    pub unit: &'static str,
+    /// Empty if the values are not from a list.
+    pub levels: Levels,
 }
 
 impl From<&'static str> for ColumnValues {
     fn from(unit: &'static str) -> Self {
-        ColumnValues::Unit(unit)
+        ColumnValues { unit, levels: &[] }
     }
 }
 
 impl From<Levels> for ColumnValues {
     fn from(levels: Levels) -> Self {
-        ColumnValues::Levels(levels)
+        ColumnValues { unit: "", levels }
     }
 }
 
@@ -90,11 +89,7 @@ impl<Row> TableColumn<Row> {
         meaning: impl Into<Cow<'static, str>>,
         value: impl Fn(&Row) -> TableCell<'_> + 'static,
     ) -> TableColumn<Row> {
-        let (unit, levels): (&str, Levels) = match values.into() {
-            ColumnValues::Unit(unit) => (unit, &[]),
-            ColumnValues::Levels(levels) => ("", levels),
-        };
-        TableColumn { name: name.into(), unit, levels, meaning: meaning.into(), value: Box::new(value) }
+        TableColumn { name: name.into(), values: values.into(), meaning: meaning.into(), value: Box::new(value) }
     }
 
     pub fn cell<'a>(&self, row: &'a Row) -> TableCell<'a> {
@@ -187,10 +182,10 @@ fn declared<Row: CsvRow>() -> Vec<DataDictionaryRow> {
 
 /// Data dictionary entries of these columns.
 pub fn entries<Row: CsvRow>(columns: Vec<TableColumn<Row>>) -> Vec<DataDictionaryRow> {
-    let row = |TableColumn { name, unit, meaning, .. }: TableColumn<Row>| DataDictionaryRow {
+    let row = |TableColumn { name: column, values, meaning, .. }: TableColumn<Row>| DataDictionaryRow {
         table: Row::TABLE,
-        column: name,
-        unit,
+        column,
+        unit: values.unit,
         meaning,
     };
     columns.into_iter().map(row).collect()

@@ -8,6 +8,7 @@
 use serde::{Serialize, Serializer};
 
 use super::trial_statistics::TrialStatistics;
+use crate::grouping::grouped;
 use crate::statistics::{
     ConfidenceInterval, Correlation, FTest, MixedAnova, hedges_g, hodges_lehmann, mixed_anova, pearson, permutation_p,
 };
@@ -42,13 +43,7 @@ pub struct LeftOutParticipant {
 
 /// "P03, P07 (no trial 2)": participants of the same reason together; `None` if nobody is left out.
 pub fn left_out_in_words(left_out: &[LeftOutParticipant]) -> Option<String> {
-    let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
-    for LeftOutParticipant { participant, reason } in left_out {
-        match reasons.iter_mut().find(|(other, _)| other == reason) {
-            Some((_, codes)) => codes.push(participant),
-            None => reasons.push((reason, vec![participant])),
-        }
-    }
+    let reasons = grouped(left_out.iter().map(|one| (one.reason.as_str(), one.participant.as_str())));
     let words: Vec<String> = reasons.iter().map(|(reason, codes)| format!("{} ({reason})", codes.join(", "))).collect();
     (!words.is_empty()).then(|| words.join("; "))
 }

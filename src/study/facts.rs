@@ -38,7 +38,11 @@ impl RecordingFacts {
         });
         is("highlights", places.map(|(_, location)| location.name.replace('_', " ")).collect::<Vec<_>>().join(", "));
         if spec.participant.kind == ParticipantKind::Simulated {
-            is("traits", parameters(&spec.participant.population.clone().unwrap_or_default()));
+            // Parameters are numbers, and lists and tables of numbers, which can always be serialised.
+            let population = spec.participant.population.clone().unwrap_or_default();
+            let mut traits = Vec::new();
+            flatten("", &serde_json::to_value(population).unwrap_or_default(), &mut traits);
+            is("traits", traits.join(", "));
         }
         is("gaze", spec.participant.gaze.entry().title.to_string());
         is("participant", participant_kind(spec.participant.kind).to_string());
@@ -54,11 +58,8 @@ impl RecordingFacts {
                 WizardKind::Scripted => is("scripted wizard", script(&spec.wizard)),
             }
             if let Some(offers) = spec.wizard.offers.as_ref().filter(|_| spec.script_reads_offers()) {
-                let taken = 100.0 * offers.takes;
-                is(
-                    "script's offers",
-                    format!("it takes {taken:.0} % of them, after {} s in the median", offers.reads_s),
-                );
+                let (taken, reads_s) = (100.0 * offers.takes, offers.reads_s);
+                is("script's offers", format!("it takes {taken:.0} % of them, after {reads_s} s in the median"));
             }
             if session.unblinded {
                 is("unblinded", String::new());
@@ -89,13 +90,6 @@ impl RecordingFacts {
     pub fn has(&self, key: &str) -> bool {
         self.found.contains_key(key)
     }
-}
-
-fn parameters(of: &impl Serialize) -> String {
-    let mut all = Vec::new();
-    // Parameters are numbers, and lists and tables of numbers, which can always be serialised.
-    flatten("", &serde_json::to_value(of).unwrap_or_default(), &mut all);
-    all.join(", ")
 }
 
 fn flatten(name: &str, value: &Value, all: &mut Vec<String>) {

@@ -8,6 +8,7 @@ use crate::analysis::fitting::{
     self, FitSettings, FitSummary, FittedRecordings, IntervalNarrowing, OtherModel, in_words,
 };
 use crate::gathered::GatheredRecordings;
+use crate::grouping::grouped;
 use crate::parallel::WorkerPool;
 use crate::standing::exclusion_status;
 use tomcom_core::kitchen::Kitchen;
@@ -37,7 +38,7 @@ impl FitTrials {
     pub fn read(recordings: &GatheredRecordings, probes: bool) -> FileResult<FitTrials> {
         let recordings = &recordings.paths;
         let (mut one_kitchen, mut observations, mut left_out) = (SameKitchenCheck::default(), Vec::new(), Vec::new());
-        let mut models = Vec::<(HumanModel, Vec<String>)>::new();
+        let mut models = Vec::new();
         for recording in recordings {
             let mut replay = RecordingReplay::open(recording)?;
             one_kitchen.admit(recording, &replay.session().kitchen)?;
@@ -46,11 +47,7 @@ impl FitTrials {
                 left_out.push(format!("{name}: {reason}"));
                 continue;
             }
-            let model = &replay.session().spec.human;
-            match models.iter_mut().find(|(known, _)| known == model) {
-                Some((_, made)) => made.push(name),
-                None => models.push((model.clone(), vec![name])),
-            }
+            models.push((replay.session().spec.human.clone(), name));
             observations.push(if probes { own } else { FitObservations { answers: Vec::new(), ..own } });
         }
         if probes && observations.iter().all(|one| one.answers.is_empty()) {
@@ -63,7 +60,7 @@ impl FitTrials {
             ));
         }
         let kitchen = one_kitchen.kitchen()?;
-        let mut models = models.into_iter();
+        let mut models = grouped(models).into_iter();
         let model = models.next().map(|(model, _)| model).unwrap_or_default();
         let others = models.map(|(model, recordings)| OtherModel { model: in_words(&model), recordings }).collect();
         Ok(FitTrials { kitchen, model, others, left_out, observations })

@@ -124,6 +124,11 @@ impl FrozenPlan {
         self.study().map_or_else(Vec::new, |frozen| differences(&session(&frozen), &session(study)))
     }
 
+    /// What participants are taught and asked that differs from what was frozen.
+    pub fn texts_differ_from(&self, study: &Study) -> Vec<PlanDifference> {
+        self.study().map_or_else(Vec::new, |frozen| study.texts_changed_since(&frozen))
+    }
+
     /// The study as it was frozen; `None` if this version of the program has other settings.
     fn study(&self) -> Option<Study> {
         let part = |name: &str| self.settings[name].clone();

@@ -14,8 +14,8 @@ use crate::planned_trial::{ForeignReason, ForeignRecording, PlannedTrialKey, Rec
 use crate::{parallel, standing};
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::log::{LOG_NAME, LogReader, SameLogs, code_files, differing_codes, header_digest, ruling};
+use tomcom_session::person_code;
 use tomcom_session::settings::ParticipantKind;
-use tomcom_session::{LogHeader, person_code};
 
 #[derive(Clone, Debug, Default)]
 pub struct GatheredRecordings {
@@ -206,7 +206,8 @@ impl FoundRecording {
         };
         let logs = log.logs().into_iter().map(place).collect::<FileResult<Vec<LogPlace>>>()?;
         let (participant, recorded_code) = (&log.header.session.participant, log.header.recorded_code());
-        let trial = planned_trial(&log.header);
+        let seed = log.header.started.is_none().then_some(log.header.session.seed);
+        let trial = PlannedTrialKey::new(&RecordedPlan::from_header(&log.header), seed);
         let is_named = logs.last().is_some_and(|(log, _)| folder_name(log).contains(recorded_code));
         let plan = log.header.session.step.as_ref().map(|step| step.plan_of_study().to_string());
         let is_simulated = participant.kind == ParticipantKind::Simulated;
@@ -257,11 +258,6 @@ fn folder_name(log: &Path) -> Cow<'_, str> {
 
 fn folder(log: &Path) -> &Path {
     log.parent().unwrap_or(Path::new("."))
-}
-
-fn planned_trial(header: &LogHeader) -> Option<PlannedTrialKey> {
-    let seed = header.started.is_none().then_some(header.session.seed);
-    PlannedTrialKey::new(&RecordedPlan::from_header(header), seed)
 }
 
 /// In a plan, a code is that of a person or of a simulated participant, not of both. `trials`: indices of the recordings of

@@ -17,22 +17,55 @@ pub const RATES_AND_RATIO: &str = "Rates pool all presses of a condition; the ra
                                    number of the trial accounted for), so it need not be their quotient. Its interval has the level at which \
                                    Holm's correction tests it: it is without 1 where the corrected p is below 0.05.";
 
+/// Largest number of trials that are named as left out.
+const MOST_NAMED: usize = 3;
+
 /// One sentence for each contrast of the primary outcome: both rates, their ratio with its interval, and whether that
 /// shows a difference; before them, if there are several, one that says what they show together. Empty without trials
 /// that count.
 pub fn primary_outcome(figures: &StudySummary) -> Vec<String> {
     if let Some(found) = &figures.arms {
         let together = (found.contrasts.len() > 1).then(|| answer(found));
-        return together.into_iter().chain(found.contrasts.iter().map(|one| contrast(found, one))).collect();
+        let mut all: Vec<String> =
+            together.into_iter().chain(found.contrasts.iter().map(|one| contrast(found, one))).collect();
+        if let Some(first) = all.first_mut() {
+            *first += &opposed(found);
+        }
+        return all;
     }
     let (outcome, conditions) = (figures.primary_outcome, &figures.conditions);
     let rates: Vec<String> = conditions.iter().map(|one| rate(one, outcome)).collect();
     let why = match conditions.len() {
         0 => return Vec::new(),
-        1 => "one condition, so nothing is compared",
+        1 => "one condition, so nothing is compared: no trial of another one counts",
         _ => "not compared: too few participants have trials in several conditions",
     };
-    vec![format!("Primary outcome, {} per 100 presses of the human: {}; {why}.", outcome.title(), rates.join(", "))]
+    let out = figures.left_out.iter().map(|one| format!("{} ({})", one.recording, one.reason));
+    let out: Vec<String> = out.take(MOST_NAMED).collect();
+    let out = match figures.left_out.len().saturating_sub(MOST_NAMED) {
+        _ if out.is_empty() => String::new(),
+        0 => format!("; left out: {}", out.join(", ")),
+        more => format!("; left out: {}, and {more} more", out.join(", ")),
+    };
+    let title = outcome.title();
+    vec![format!("Primary outcome, {title} per 100 presses of the human: {}; {why}{out}.", rates.join(", "))]
+}
+
+/// That the rates of conditions and their ratio point two ways, in a sentence that follows another; empty where they do not.
+fn opposed(found: &StudyArmComparison) -> String {
+    let is_opposed = |one: &&StudyArmContrast| {
+        let [rate, against] = [one.arm, one.against].map(|arm| found.per_100(arm));
+        (10.0 * (rate - against)).round() * (100.0 * (one.ratio - 1.0)).round() < 0.0
+    };
+    let named = |one: &StudyArmContrast| format!("{} to {}", one.arm.title(), one.against.title());
+    let which: Vec<String> = found.contrasts.iter().filter(is_opposed).map(named).collect();
+    match which.is_empty() {
+        true => String::new(),
+        false => format!(
+            " Of {} rates and ratio point two ways: the rates pool all presses, the ratio compares trials within participants.",
+            which.join(", ")
+        ),
+    }
 }
 
 fn rate(one: &StudyConditionSummary, outcome: PrimaryOutcome) -> String {
@@ -126,7 +159,6 @@ pub fn doubts(found: &StudyArmComparison) -> Vec<String> {
 }
 
 fn contrast(found: &StudyArmComparison, one: &StudyArmContrast) -> String {
-    let rate = |arm| found.arms.iter().find(|counts| counts.arm == arm).map_or(f64::NAN, |counts| counts.per_100());
     let ([low, high], contrasts) = (one.interval, found.contrasts.len());
     let (arm, against) = (one.arm.title(), one.against.title());
     let corrected = match contrasts {
@@ -148,8 +180,8 @@ fn contrast(found: &StudyArmComparison, one: &StudyArmContrast) -> String {
         "Primary outcome, {} per 100 presses of the human: {arm} {:.1}, {against} {:.1}; ratio {:.2}{doubted}, {interval}: \
          {verdict}{corrected}.",
         found.outcome.title(),
-        rate(one.arm),
-        rate(one.against),
+        found.per_100(one.arm),
+        found.per_100(one.against),
         one.ratio,
     )
 }

@@ -45,6 +45,7 @@ pub mod files;
 pub mod fit;
 pub mod frozen_plan;
 pub mod gathered;
+mod grouping;
 pub mod headline;
 pub mod kept_cost;
 pub mod live_arms;

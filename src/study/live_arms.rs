@@ -10,6 +10,7 @@ use std::collections::BTreeSet;
 
 use serde::Serialize;
 
+use crate::grouping::grouped;
 use crate::roc::ConceptRocCurve;
 use crate::trial_statistics::{SignalSenderWithParameter, TrialStatistics, mean_length};
 use tomcom_session::settings::ParticipantKind;
@@ -52,14 +53,7 @@ fn key(trial: &TrialStatistics) -> TrialKey {
 /// Results of all arms over the trials that all of the arms have; empty unless at least two arms share trials.
 pub fn live_arms(trials: &[&TrialStatistics], roc: &[ConceptRocCurve]) -> Vec<SignalSenderResults> {
     let simulated = |trial: &&TrialStatistics| trial.kind == ParticipantKind::Simulated && trial.beliefs.is_some();
-    let mut groups: Vec<(SignalSenderWithParameter, Vec<&TrialStatistics>)> = Vec::new();
-    for trial in trials.iter().copied().filter(simulated) {
-        let arm = trial.acting;
-        match groups.iter_mut().find(|(other, _)| *other == arm) {
-            Some((_, group)) => group.push(trial),
-            None => groups.push((arm, vec![trial])),
-        }
-    }
+    let mut groups = grouped(trials.iter().copied().filter(simulated).map(|trial| (trial.acting, trial)));
     groups.sort_by(|(a, _), (b, _)| a.rank().0.cmp(&b.rank().0).then(a.rank().1.total_cmp(&b.rank().1)));
     let sets = groups.iter().map(|(_, group)| group.iter().map(|trial| key(trial)).collect::<BTreeSet<TrialKey>>());
     let shared = sets.reduce(|a, b| a.intersection(&b).cloned().collect()).unwrap_or_default();

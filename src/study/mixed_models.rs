@@ -176,31 +176,17 @@ impl LinearMixedModel {
         let rows: Vec<f64> = measurements.iter().flat_map(|one| one.effects.iter().copied()).collect();
         let x = DMatrix::from_row_slice(measurements.len(), effects, &rows);
         let weighted = weigh(&x, &participants, &sums, ratio) / within;
-        let variances = (ratio > 0.0).then(|| {
-            let projection = ResidualProjection {
-                sums: &sums,
-                participants: &participants,
-                ratio,
-                within,
-                weighted: &weighted,
-                covariance: &covariance,
-            };
-            let y = DVector::from_iterator(measurements.len(), measurements.iter().map(|one| one.value));
-            covariance_of_variances(&projection, &y)
-        });
-        let variances = match variances {
-            Some(found) => Some(found?),
-            None => None,
+        let variances = match ratio > 0.0 {
+            true => {
+                let (participants, weighted, covariance) = (&participants[..], &weighted, &covariance);
+                let p = ResidualProjection { sums: &sums, participants, ratio, within, weighted, covariance };
+                let y = DVector::from_iterator(measurements.len(), measurements.iter().map(|one| one.value));
+                Some(covariance_of_variances(&p, &y)?)
+            }
+            false => None,
         };
-        Some(LinearMixedModel {
-            estimates,
-            covariance,
-            between: ratio * within,
-            within,
-            weighted,
-            participants,
-            variances,
-        })
+        let between = ratio * within;
+        Some(LinearMixedModel { estimates, covariance, between, within, weighted, participants, variances })
     }
 
     pub fn contrast(&self, weights: &[f64]) -> Option<MixedModelContrast> {
@@ -221,7 +207,7 @@ impl LinearMixedModel {
         };
         // dC/dv_k = C X' V^-1 G_k V^-1 X C; G is ZZ' for the participants, and the identity for the residuals.
         let u = &self.weighted * (&self.covariance * weights);
-        let slope = [sums_by_participant(&u, &self.participants).norm_squared(), u.norm_squared()];
+        let slope = [sums_by_participant(&column(&u), &self.participants).norm_squared(), u.norm_squared()];
         let of_variance: f64 = (0..2).flat_map(|k| (0..2).map(move |l| slope[k] * slope[l] * variances[k][l])).sum();
         2.0 * variance * variance / of_variance
     }
@@ -229,11 +215,7 @@ impl LinearMixedModel {
 
 /// W^-1 times a matrix, where W is the covariance of the measurements divided by the residual variance.
 fn weigh(matrix: &DMatrix<f64>, participants: &[usize], sums: &Sums, ratio: f64) -> DMatrix<f64> {
-    let mut totals = DMatrix::<f64>::zeros(sums.groups.len(), matrix.ncols());
-    for (row, &participant) in participants.iter().enumerate() {
-        let sum = totals.row(participant) + matrix.row(row);
-        totals.set_row(participant, &sum);
-    }
+    let totals = sums_by_participant(matrix, participants);
     let mut weighed = matrix.clone();
     for (row, &participant) in participants.iter().enumerate() {
         let shrink = ratio / (1.0 + sums.groups[participant].0 * ratio);
@@ -243,13 +225,19 @@ fn weigh(matrix: &DMatrix<f64>, participants: &[usize], sums: &Sums, ratio: f64)
     weighed
 }
 
-fn sums_by_participant(values: &DVector<f64>, participants: &[usize]) -> DVector<f64> {
+/// A row for each participant: the sum of the rows of its measurements.
+fn sums_by_participant(rows: &DMatrix<f64>, participants: &[usize]) -> DMatrix<f64> {
     let count = participants.iter().map(|participant| participant + 1).max().unwrap_or(0);
-    let mut sums = DVector::zeros(count);
-    for (value, &participant) in values.iter().zip(participants) {
-        sums[participant] += value;
+    let mut sums = DMatrix::<f64>::zeros(count, rows.ncols());
+    for (row, &participant) in participants.iter().enumerate() {
+        let sum = sums.row(participant) + rows.row(row);
+        sums.set_row(participant, &sum);
     }
     sums
+}
+
+fn column(values: &DVector<f64>) -> DMatrix<f64> {
+    DMatrix::from_column_slice(values.len(), 1, values.as_slice())
 }
 
 /// The matrix P = V^-1 - V^-1 X C X' V^-1, with C the covariance of the fixed effects. P has a row and a column for
@@ -265,18 +253,13 @@ struct ResidualProjection<'a> {
 
 impl ResidualProjection<'_> {
     fn times(&self, y: &DVector<f64>) -> DVector<f64> {
-        let column = DMatrix::from_column_slice(y.len(), 1, y.as_slice());
-        let weighed = weigh(&column, self.participants, self.sums, self.ratio) / self.within;
+        let weighed = weigh(&column(y), self.participants, self.sums, self.ratio) / self.within;
         weighed.column(0) - self.weighted * (self.covariance * (self.weighted.transpose() * y))
     }
 
     fn traces(&self) -> [f64; 3] {
-        let (effects, v) = (self.covariance.nrows(), self.within);
-        let mut by_participant = DMatrix::<f64>::zeros(self.sums.groups.len(), effects);
-        for (row, &participant) in self.participants.iter().enumerate() {
-            let sum = by_participant.row(participant) + self.weighted.row(row);
-            by_participant.set_row(participant, &sum);
-        }
+        let v = self.within;
+        let by_participant = sums_by_participant(self.weighted, self.participants);
         // X' V^-1 V^-1 X, and the same of the participants' sums.
         let all = self.weighted.transpose() * self.weighted;
         let grouped = by_participant.transpose() * &by_participant;
@@ -300,7 +283,7 @@ impl ResidualProjection<'_> {
 /// the participants, and the identity for the residuals.
 fn covariance_of_variances(p: &ResidualProjection, y: &DVector<f64>) -> Option<[[f64; 2]; 2]> {
     let r = p.times(y);
-    let sums = sums_by_participant(&r, p.participants);
+    let sums = sums_by_participant(&column(&r), p.participants);
     // G_k P y: each participant's sum at each of its measurements, and P y itself.
     let of_sums = DVector::from_iterator(r.len(), p.participants.iter().map(|&participant| sums[participant]));
     let [both, one, neither] = p.traces();

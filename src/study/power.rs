@@ -355,24 +355,19 @@ fn describe_test(found: &PowerSummary, index: usize) -> String {
 /// How many participants are needed, and which effect the middle one of the tried numbers detects.
 fn power_in_words(found: &PowerSummary, needed: &RequiredSampleSize, index: usize) -> String {
     let largest = found.sizes.last().map_or(0, |size| size.participants);
-    let mut text = match (needed.participants, needed.surely) {
-        (Some(enough), Some(surely)) if surely > enough => {
-            format!(
-                "  Of the numbers tried, {enough} is the least with a power of {WANTED}; {surely} to be sure of it, as the pool is finite."
-            )
+    let mut text = match needed.participants {
+        Some(enough) => {
+            let sure = match needed.surely {
+                Some(surely) if surely > enough => format!("; {surely} to be sure of it, as the pool is finite"),
+                Some(_) => String::new(),
+                None => "; the pool is too small to be sure of it".to_string(),
+            };
+            format!("  Of the numbers tried, {enough} is the least with a power of {WANTED}{sure}.")
         }
-        (Some(enough), Some(_)) => format!("  Of the numbers tried, {enough} is the least with a power of {WANTED}."),
-        (Some(enough), None) => {
-            format!(
-                "  Of the numbers tried, {enough} is the least with a power of {WANTED}; the pool is too small to be sure of it."
-            )
-        }
-        (None, _) if found.sizes.last().is_some_and(|size| size.tests[index].found.interval[1] >= WANTED) => {
-            format!(
-                "  The pool is too small to tell whether {largest} participants are enough for a power of {WANTED}."
-            )
-        }
-        (None, _) => format!("  {largest} participants are not enough for a power of {WANTED}."),
+        None if found.sizes.last().is_some_and(|size| size.tests[index].found.interval[1] >= WANTED) => format!(
+            "  The pool is too small to tell whether {largest} participants are enough for a power of {WANTED}."
+        ),
+        None => format!("  {largest} participants are not enough for a power of {WANTED}."),
     };
     let middle = found.sizes.get(found.sizes.len() / 2);
     if let Some((size, ratio)) = middle.and_then(|size| Some((size, size.tests[index].least_ratio?))) {
@@ -471,7 +466,17 @@ pub fn measure(
     };
     let (tests, ratios) = (tests(&header.conditions), ratios());
     let blocks = all_blocks(request, pool);
-    let counted = parallel::each(&blocks, |block| counts(&source, &tests, request.effect, &ratios, block), done);
+    let counts = |block: &Block| {
+        let count = |source: &StudySampler, effect: DrawnEffect| {
+            count_rejections(source, &tests, block.size, effect, block.numbers.clone())
+        };
+        match block.drawn {
+            Drawn::Pool => count(&source, request.effect),
+            Drawn::Resampled(number) => count(&source.resampled(number), request.effect),
+            Drawn::Ratio(index) => count(&source, DrawnEffect::Ratio(ratios[index])),
+        }
+    };
+    let counted = parallel::each(&blocks, counts, done);
     let of_size = |&size: &usize| {
         let sum = |drawn: Drawn| {
             let own = blocks.iter().zip(&counted).filter(|(block, _)| block.size == size && block.drawn == drawn);
@@ -493,19 +498,4 @@ pub fn measure(
     };
     let sizes: Vec<SampleSizeRejections> = request.sizes.iter().map(of_size).collect();
     Ok(PowerSummary::new(header, request.effect, &sizes))
-}
-
-fn counts(
-    source: &StudySampler,
-    tests: &[PowerTest],
-    effect: DrawnEffect,
-    ratios: &[f64],
-    block: &Block,
-) -> Vec<RejectionCount> {
-    let numbers = block.numbers.clone();
-    match block.drawn {
-        Drawn::Pool => count_rejections(source, tests, block.size, effect, numbers),
-        Drawn::Resampled(number) => count_rejections(&source.resampled(number), tests, block.size, effect, numbers),
-        Drawn::Ratio(index) => count_rejections(source, tests, block.size, DrawnEffect::Ratio(ratios[index]), numbers),
-    }
 }

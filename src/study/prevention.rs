@@ -54,7 +54,7 @@ pub struct HypotheticalSignal {
     pub aspects: Vec<AspectId>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PreventionCounts {
     pub presses: u64,
     /// Number of interruptions: one for each signal or proposal.
@@ -71,24 +71,6 @@ pub struct PreventionCounts {
     pub false_inside: u64,
     /// About a false belief that led to no error; useless, too. Null where such beliefs are not known.
     pub harmless: Option<u64>,
-}
-
-impl Default for PreventionCounts {
-    fn default() -> PreventionCounts {
-        PreventionCounts {
-            presses: 0,
-            signals: 0,
-            contents: 0,
-            related: 0,
-            prevented: 0,
-            useless: 0,
-            lead_ms: 0,
-            outside: 0,
-            false_presses: 0,
-            false_inside: 0,
-            harmless: Some(0),
-        }
-    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]

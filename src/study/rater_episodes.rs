@@ -320,9 +320,7 @@ impl KnownFalseBeliefs {
         let episodes = rater_episodes(kitchen, cost, trace, judged, &targets);
         KnownFalseBeliefs { basis, targets: targets.into_iter().collect(), episodes }
     }
-}
 
-impl KnownFalseBeliefs {
     pub fn episode(&self, kitchen: &Kitchen, press: &JudgedPress) -> Option<&FalseBeliefEpisode> {
         let target = self.targets.get(&press.seq)?;
         let is_in =

@@ -123,10 +123,6 @@ impl Curves {
         let reached: Option<Vec<f64>> = self.of.iter().map(|[curve, ..]| reach(curve)).collect();
         reached?.into_iter().reduce(f64::min).filter(|&common| common > 0.0)
     }
-
-    fn area(&self, concept: usize, to: f64) -> Option<f64> {
-        area(&self.of[concept][0], to)
-    }
 }
 
 /// What is read off the curves at equal numbers of signals.
@@ -146,7 +142,7 @@ fn height(curve: &[(f64, f64)], x: f64) -> Option<f64> {
 }
 
 /// Mean height of a curve over x from 0 to `to`.
-fn area(curve: &[(f64, f64)], to: f64) -> Option<f64> {
+fn mean_height(curve: &[(f64, f64)], to: f64) -> Option<f64> {
     let end = height(curve, to)?;
     let mut points: Vec<(f64, f64)> = curve.iter().copied().filter(|point| point.0 < to).collect();
     points.push((to, end));
@@ -157,13 +153,13 @@ fn area(curve: &[(f64, f64)], to: f64) -> Option<f64> {
 /// Compares the communication concepts by their counts over the unassisted trials of a study. The percentile bootstrap
 /// (Efron 1979) resamples participants; its random stream is seeded by `seed`.
 pub fn compare(totals: &ConceptTotals, seed: u64) -> ConceptComparison {
-    let sum = totals.sum();
+    let sum = &totals.sum;
     if sum.is_empty() {
         return ConceptComparison::default();
     }
     let curves = Curves::from_counts(sum);
     let common = curves.common();
-    let participants = totals.participants();
+    let participants = totals.participants.len();
     let resampled: Vec<Curves> =
         resamples(participants, seed).map(|times| Curves::from_counts(&totals.resampled(&times))).collect();
     let roc = |(index, &concept): (usize, &ConceptName)| {
@@ -182,7 +178,7 @@ pub fn compare(totals: &ConceptTotals, seed: u64) -> ConceptComparison {
         };
         // Each resample is integrated over its own common range, because many resamples do not reach the full sample's
         // range.
-        let area = banded(&curves, &resampled, |curves| curves.area(index, curves.common()?));
+        let area = banded(&curves, &resampled, |curves| mean_height(&curves.of[index][0], curves.common()?));
         let at = |signals: f64| move |curves: &Curves| height(&curves.of[index][1], signals);
         let useless = |signals: f64| move |curves: &Curves| Some(height(&curves.of[index][2], signals)? / signals);
         let behind = |signals: f64| {
@@ -202,7 +198,7 @@ pub fn compare(totals: &ConceptTotals, seed: u64) -> ConceptComparison {
     };
     ConceptComparison {
         participants: participants as u64,
-        trials: totals.trials(),
+        trials: totals.trials,
         common_fpr: common,
         concepts: CONCEPTS.iter().enumerate().map(roc).collect(),
     }
@@ -249,52 +245,14 @@ pub struct ConceptPreventionCounts {
     pub count: PreventionCounts,
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct RateCounts {
-    presses: u32,
-    signals: u32,
-    related: u32,
-    prevented: u32,
-    useless: u32,
-}
-
-impl RateCounts {
-    fn add(&mut self, count: &PreventionCounts) {
-        let counts = [
-            (&mut self.presses, count.presses),
-            (&mut self.signals, count.signals),
-            (&mut self.related, count.related),
-            (&mut self.prevented, count.prevented),
-            (&mut self.useless, count.useless),
-        ];
-        for (sum, one) in counts {
-            *sum = sum.saturating_add(u32::try_from(one).unwrap_or(u32::MAX));
-        }
-    }
-
-    /// The counts of `times` copies of the participant; counts that are not in the rates are 0.
-    fn repeated(&self, times: u32) -> PreventionCounts {
-        let all = |count: u32| u64::from(count) * u64::from(times);
-        PreventionCounts {
-            presses: all(self.presses),
-            signals: all(self.signals),
-            related: all(self.related),
-            prevented: all(self.prevented),
-            useless: all(self.useless),
-            ..PreventionCounts::default()
-        }
-    }
-}
-
 /// Prevention counts of every concept and parameter value, over all unassisted trials and for each participant, as the
-/// bootstrap needs them. Only the counts from which rates follow are kept for each participant, so that a large study
-/// needs little memory.
+/// bootstrap needs them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ConceptTotals {
     trials: u64,
     sum: Vec<ConceptPreventionCounts>,
     /// For each participant, the counts in the order of `sum`.
-    participants: Vec<Vec<RateCounts>>,
+    participants: Vec<Vec<PreventionCounts>>,
     last: Option<String>,
 }
 
@@ -307,34 +265,22 @@ impl ConceptTotals {
         }
         if self.last.as_deref() != Some(participant) {
             self.last = Some(participant.to_string());
-            self.participants.push(vec![RateCounts::default(); self.sum.len()]);
+            self.participants.push(vec![PreventionCounts::default(); self.sum.len()]);
         }
         self.trials += 1;
-        for (sum, one) in self.sum.iter_mut().zip(swept) {
-            sum.count = sum.count.plus(&one.count);
-        }
         let of_one = self.participants.last_mut().into_iter().flatten();
-        of_one.zip(swept).for_each(|(sum, one)| sum.add(&one.count));
+        for ((sum, own), one) in self.sum.iter_mut().zip(of_one).zip(swept) {
+            sum.count = sum.count.plus(&one.count);
+            *own = own.plus(&one.count);
+        }
     }
 
-    pub fn trials(&self) -> u64 {
-        self.trials
-    }
-
-    pub fn participants(&self) -> usize {
-        self.participants.len()
-    }
-
-    pub fn sum(&self) -> &[ConceptPreventionCounts] {
-        &self.sum
-    }
-
-    /// Each counts as often as `times` says; only counts that are in the rates are summed.
-    pub fn resampled(&self, times: &[u32]) -> Vec<ConceptPreventionCounts> {
+    /// Each participant counts as often as `times` says.
+    fn resampled(&self, times: &[u32]) -> Vec<ConceptPreventionCounts> {
         let mut sum = emptied(&self.sum);
         for (participant, &times) in self.participants.iter().zip(times) {
             for (sum, one) in sum.iter_mut().zip(participant) {
-                sum.count = sum.count.plus(&one.repeated(times));
+                (0..times).for_each(|_| sum.count = sum.count.plus(one));
             }
         }
         sum
@@ -342,5 +288,6 @@ impl ConceptTotals {
 }
 
 fn emptied(counts: &[ConceptPreventionCounts]) -> Vec<ConceptPreventionCounts> {
-    counts.iter().map(|one| ConceptPreventionCounts { count: PreventionCounts::default(), ..*one }).collect()
+    let count = PreventionCounts { harmless: Some(0), ..PreventionCounts::default() };
+    counts.iter().map(|one| ConceptPreventionCounts { count, ..*one }).collect()
 }

@@ -2,14 +2,15 @@
 
 use std::path::Path;
 
-use crate::analysis::comparison_summary::{RecordingSenderComparison, SenderComparer};
+use crate::analysis::comparison_summary::RecordingSenderComparison;
 use crate::gathered::GatheredRecordings;
 use crate::parallel;
 use crate::standing::exclusion_status;
 use tomcom_core::base::text::count;
+use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::log::LogReader;
-use tomcom_session::watcher::SenderComparisonSettings;
+use tomcom_session::watcher::{SenderComparisonFollower, SenderComparisonSettings};
 
 /// Matching windows that the option `--sweep` tries, in presses of the human.
 pub const SWEEP: std::ops::RangeInclusive<u32> = 0..=10;
@@ -24,13 +25,13 @@ pub fn watch(
 
 fn follow(recording: &Path, request: &SenderComparisonSettings) -> FileResult<RecordingSenderComparison> {
     let mut log = LogReader::open(recording)?;
-    let mut comparer = SenderComparer::new(log.session(), request);
+    let cost = CostToGo::new(log.kitchen.clone());
+    let mut follower = SenderComparisonFollower::new(log.session(), cost, request);
     while let Some(line) = log.next_line()? {
-        let added = comparer.add(&line.stamped);
-        added.map_err(|error| log.refused(&line, error))?;
+        follower.apply(&line.stamped).map_err(|error| log.refused(&line, error))?;
     }
-    let standing = exclusion_status(comparer.session(), &log)?;
-    Ok(comparer.finish(recording.display().to_string(), standing))
+    let standing = exclusion_status(&follower.follower.session, &log)?;
+    Ok(RecordingSenderComparison::new(recording.display().to_string(), follower, standing))
 }
 
 /// Errors: there is no unmatched communication with this number, or there are several recordings.

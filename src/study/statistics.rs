@@ -7,7 +7,8 @@ use rand::RngExt;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
-use tomcom_core::base::rng::{shuffle, stream};
+use tomcom_core::base::rng::{Stream, shuffle, stream};
+use tomcom_core::measures::median;
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FTest {
@@ -169,16 +170,17 @@ pub struct ConfidenceInterval {
 /// confidence interval (distribution of U without ties; Hollander and Wolfe 1999, section 4.2). `None` if a group is
 /// empty.
 pub fn hodges_lehmann(a: &[f64], b: &[f64], level: f64) -> Option<ConfidenceInterval> {
-    let differences = PairwiseDifferences::new(a, b);
-    let last = differences.number().checked_sub(1)?;
+    let mut differences: Vec<f64> = a.iter().flat_map(|a| b.iter().map(move |b| a - b)).collect();
+    differences.sort_unstable_by(f64::total_cmp);
+    let last = differences.len().checked_sub(1)?;
     let tail = (1.0 - level) / 2.0;
-    let (left_out, below) = match differences.number() {
+    let (left_out, below) = match differences.len() {
         0..=MAX_EXACT_PAIRS => omitted(exact_cdf(a.len(), b.len()).into_iter(), tail),
         _ => omitted(normal_cdf(a.len(), b.len()), tail),
     };
-    let low = if left_out == 0 { f64::NEG_INFINITY } else { differences.nth(left_out - 1) };
-    let high = if left_out == 0 { f64::INFINITY } else { differences.nth(last + 1 - left_out) };
-    Some(ConfidenceInterval { estimate: differences.median()?, low, high, level: 1.0 - 2.0 * below })
+    let low = if left_out == 0 { f64::NEG_INFINITY } else { differences[left_out - 1] };
+    let high = if left_out == 0 { f64::INFINITY } else { differences[last + 1 - left_out] };
+    Some(ConfidenceInterval { estimate: median(differences)?, low, high, level: 1.0 - 2.0 * below })
 }
 
 /// Number of differences left out on each side, and the probability of each side: at most `tail`.
@@ -266,67 +268,6 @@ pub(crate) fn sample_sd(values: &[f64]) -> Option<f64> {
     Some((sum / (values.len() - 1) as f64).sqrt())
 }
 
-/// The differences between all values of two samples in their order, without storing them: two samples of 700 have
-/// 490,000 differences.
-/// The differences between all values of two samples in their order, without storing them: two samples of 700 have
-/// 490,000 differences.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PairwiseDifferences {
-    a: Vec<f64>,
-    b: Vec<f64>,
-}
-
-impl PairwiseDifferences {
-    pub fn new(a: &[f64], b: &[f64]) -> PairwiseDifferences {
-        let [a, b] = [a, b].map(|values| {
-            let mut values = values.to_vec();
-            values.sort_by(f64::total_cmp);
-            values
-        });
-        PairwiseDifferences { a, b }
-    }
-
-    pub fn number(&self) -> usize {
-        self.a.len() * self.b.len()
-    }
-
-    /// The difference at this index in ascending order; the index must be below [`PairwiseDifferences::number`].
-    pub fn nth(&self, index: usize) -> f64 {
-        // Bisection over all floats in their order: the least float that more than `index` differences do not exceed.
-        let (mut low, mut high) = (0, u64::MAX);
-        while low < high {
-            let middle = low + (high - low) / 2;
-            if self.number_up_to(float_at(middle)) > index { high = middle } else { low = middle + 1 }
-        }
-        float_at(low)
-    }
-
-    pub fn median(&self) -> Option<f64> {
-        let (number, middle) = (self.number(), self.number() / 2);
-        match number {
-            0 => None,
-            odd if odd % 2 == 1 => Some(self.nth(middle)),
-            _ => Some((self.nth(middle - 1) + self.nth(middle)) / 2.0),
-        }
-    }
-
-    fn number_up_to(&self, limit: f64) -> usize {
-        // The larger a is, the larger must b be, since rounding keeps the order of differences.
-        let mut below = 0;
-        let of_one = |a: &f64| {
-            below += self.b[below..].iter().take_while(|b| (a - *b).total_cmp(&limit).is_gt()).count();
-            self.b.len() - below
-        };
-        self.a.iter().map(of_one).sum()
-    }
-}
-
-/// The float at this place in the order of `f64::total_cmp`.
-fn float_at(place: u64) -> f64 {
-    const SIGN: u64 = 1 << 63;
-    f64::from_bits(if place & SIGN == 0 { !place } else { place ^ SIGN })
-}
-
 const RESAMPLES: usize = 2000;
 const INTERVAL: [f64; 2] = [0.025, 0.975];
 
@@ -345,13 +286,8 @@ pub fn intervals<T: Copy, const N: usize>(
     seed: u64,
     statistics: impl Fn(&[T]) -> [f64; N],
 ) -> [[f64; 2]; N] {
-    let mut random = stream(seed, "bootstrap over trials", 0);
-    let resampled: Vec<[f64; N]> = (0..RESAMPLES)
-        .map(|_| {
-            let drawn: Vec<T> = trials.iter().map(|_| trials[random.random_range(0..trials.len())]).collect();
-            statistics(&drawn)
-        })
-        .collect();
+    let resamples = resamples(trials, stream(seed, "bootstrap over trials", 0));
+    let resampled: Vec<[f64; N]> = resamples.map(|drawn| statistics(&drawn)).collect();
     std::array::from_fn(|index| percentiles(resampled.iter().map(|all| all[index]).collect(), INTERVAL))
 }
 
@@ -364,14 +300,13 @@ pub(crate) fn interval_where_known<T: Copy>(
     if units.len() < FEWEST {
         return None;
     }
-    let mut random = stream(seed, "bootstrap over participants", 0);
-    let resampled: Vec<f64> = (0..RESAMPLES)
-        .filter_map(|_| {
-            let drawn: Vec<T> = units.iter().map(|_| units[random.random_range(0..units.len())]).collect();
-            statistic(&drawn)
-        })
-        .collect();
+    let resamples = resamples(units, stream(seed, "bootstrap over participants", 0));
+    let resampled: Vec<f64> = resamples.filter_map(|drawn| statistic(&drawn)).collect();
     (2 * resampled.len() >= RESAMPLES).then(|| percentiles(resampled, INTERVAL))
+}
+
+fn resamples<T: Copy>(units: &[T], mut random: Stream) -> impl Iterator<Item = Vec<T>> {
+    (0..RESAMPLES).map(move |_| units.iter().map(|_| units[random.random_range(0..units.len())]).collect::<Vec<T>>())
 }
 
 /// The values at these shares of the sorted values, of which there is at least one.

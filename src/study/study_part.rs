@@ -127,11 +127,6 @@ impl ShardMismatch {
 }
 
 impl PartHeader {
-    /// Whether this and the other part have the same number among as many parts, whatever was analysed.
-    pub(crate) fn is_place_of(&self, other: &PartHeader) -> bool {
-        (self.shard, self.shards) == (other.shard, other.shards)
-    }
-
     fn options(&self) -> String {
         let PartAnalysisOptions { concepts, events, raters } = &self.analysis;
         let skipped = [(*concepts, "concepts"), (*events, "events")];

@@ -194,34 +194,31 @@ impl Tournament {
     }
 }
 
-/// Columns of the table as text and as CSV: name, digits, value.
-type FigureColumn = (&'static str, usize, fn(&TournamentRow) -> StudyArmStatistic);
+/// Columns of the table: title in the text, name and unit in the CSV, digits, value.
+type FigureColumn = (&'static str, [&'static str; 2], usize, fn(&TournamentRow) -> StudyArmStatistic);
 
 const FIGURES: [FigureColumn; 7] = [
-    ("net saving", 1, |row| row.net_saving_per_100),
-    ("belief related", 1, |row| row.related_per_100),
-    ("difference", 1, |row| row.related_difference),
-    ("signals", 1, |row| row.signals_per_100),
-    ("useless", 1, |row| row.useless_per_100),
-    ("orders a minute", 2, |row| row.orders_per_minute),
-    ("difference", 2, |row| row.orders_difference),
+    ("net saving", ["net_saving", "_per_100"], 1, |row| row.net_saving_per_100),
+    ("belief related", ["related", "_per_100"], 1, |row| row.related_per_100),
+    ("difference", ["related_difference", ""], 1, |row| row.related_difference),
+    ("signals", ["signals", "_per_100"], 1, |row| row.signals_per_100),
+    ("useless", ["useless", "_per_100"], 1, |row| row.useless_per_100),
+    ("orders a minute", ["orders", "_per_minute"], 2, |row| row.orders_per_minute),
+    ("difference", ["orders_difference", ""], 2, |row| row.orders_difference),
 ];
 
 pub fn describe(found: &Tournament) -> String {
     let mut text = format!("seed {}: {} simulated trials of each concept\n\n", found.seed, found.trials);
     text += "|   | concept | trials";
-    for (name, ..) in FIGURES {
-        text += &format!(" | {name}");
+    for (title, ..) in FIGURES {
+        text += &format!(" | {title}");
     }
     text += " | ms an answer | belief AUC, ECE |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n";
     for (place, row) in found.concepts.iter().enumerate() {
         let failed = if row.failed > 0 { format!(" ({} failed)", row.failed) } else { String::new() };
         text += &format!("| {} | {} | {}{failed}", place + 1, row.concept, row.trials);
-        for (_, digits, value) in FIGURES {
-            let StudyArmStatistic { value, interval } = value(row);
-            let cell = value.map_or("-".to_string(), |value| format!("{value:.digits$}"));
-            let around = interval.map_or(String::new(), |[low, high]| format!(" ({low:.digits$} to {high:.digits$})"));
-            text += &format!(" | {cell}{around}");
+        for (_, _, digits, value) in FIGURES {
+            text += &format!(" | {}", value(row).in_words(1.0, digits));
         }
         let ms = row.computing_ms.map_or("-".to_string(), |ms| format!("{ms:.1}"));
         let pair = |auc: Option<f64>, ece: Option<f64>| match (auc, ece) {
@@ -257,44 +254,14 @@ pub fn of_earlier_run(trials: u64) -> String {
     format!("{trials} of an earlier run; if the program was changed since, delete them")
 }
 
-/// Names of the columns of the CSV.
-const COLUMNS: [&str; 31] = [
-    "place",
-    "concept",
-    "name",
-    "trials",
-    "failed",
-    "faults",
-    "net_saving_per_100",
-    "net_saving_low",
-    "net_saving_high",
-    "related_per_100",
-    "related_low",
-    "related_high",
-    "related_difference",
-    "related_difference_low",
-    "related_difference_high",
-    "signals_per_100",
-    "signals_low",
-    "signals_high",
-    "useless_per_100",
-    "useless_low",
-    "useless_high",
-    "orders_per_minute",
-    "orders_low",
-    "orders_high",
-    "orders_difference",
-    "orders_difference_low",
-    "orders_difference_high",
-    "computing_ms",
-    "told_auc",
-    "told_ece",
-    "own_auc",
-];
-
-/// The header of the table as CSV.
-pub fn csv_header() -> String {
-    COLUMNS.join(",") + ",own_ece"
+/// The names of the columns of the table as CSV.
+pub fn csv_header() -> Vec<String> {
+    let mut names = ["place", "concept", "name", "trials", "failed", "faults"].map(str::to_string).to_vec();
+    for (_, [name, unit], ..) in FIGURES {
+        names.extend([format!("{name}{unit}"), format!("{name}_low"), format!("{name}_high")]);
+    }
+    names.extend(["computing_ms", "told_auc", "told_ece", "own_auc", "own_ece"].map(str::to_string));
+    names
 }
 
 /// The rows of the table as CSV; unknown values are empty.
@@ -303,7 +270,7 @@ pub fn csv_rows(found: &Tournament) -> Vec<Vec<String>> {
     let row = |(place, row): (usize, &TournamentRow)| {
         let mut cells = vec![(place + 1).to_string(), row.concept.clone(), row.name.clone().unwrap_or_default()];
         cells.extend([row.trials, row.failed, row.faults].map(|count| count.to_string()));
-        for (_, _, value) in FIGURES {
+        for (.., value) in FIGURES {
             let StudyArmStatistic { value, interval } = value(row);
             cells.extend([value, interval.map(|[low, _]| low), interval.map(|[_, high]| high)].map(number));
         }

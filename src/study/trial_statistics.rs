@@ -1,7 +1,7 @@
 //! Statistics of trials: those that the analysis keeps in memory for every trial of a study, the details that it keeps
 //! in temporary files and reads trial by trial, and sums over both.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Deserializer, Serialize, de};
 
@@ -13,7 +13,7 @@ use crate::robot_tally::RobotEventSummary;
 use crate::roc::{ConceptPreventionCounts, ConceptTotals};
 use crate::statistics::{ConfidenceInterval, mean, share_interval};
 use tomcom_core::communication::concept::ConceptName;
-use tomcom_core::measures::matching::{CommunicationEvent, MatchCounts, Similarity, WINDOW};
+use tomcom_core::measures::matching::{CommunicationEvent, MatchCounts, WINDOW};
 use tomcom_core::measures::raters::{BeliefSource, RaterPair};
 use tomcom_core::measures::sequences::BeliefErrorCounts;
 use tomcom_core::measures::wizard_performance::WizardMeasures;
@@ -149,10 +149,6 @@ impl TrialStatistics {
         self.left_out.is_none()
     }
 
-    pub(crate) fn kind_name(&self) -> &'static str {
-        kind_name(self.kind)
-    }
-
     pub fn presses(&self) -> u64 {
         self.human_presses + self.robot_presses
     }
@@ -189,9 +185,9 @@ pub(crate) fn mean_length(lengths: &[u32]) -> Option<f64> {
 /// period. Without a plan, a live trial is the participant's first or second by wall clock, if exactly two of the
 /// participant's trials count.
 pub fn arrange(trials: &mut [TrialStatistics]) {
-    let mut seeds: Vec<u64> = simulated(trials).map(|trial| trial.seed).collect();
-    seeds.sort_unstable();
-    seeds.dedup();
+    // In simulated trials every seed uses the same participant codes.
+    let simulated = trials.iter().filter(|trial| trial.started.is_none());
+    let seeds: BTreeSet<u64> = simulated.map(|trial| trial.seed).collect();
     for trial in trials.iter_mut().filter(|trial| trial.started.is_none() && seeds.len() > 1) {
         trial.participant = format!("seed{}-{}", trial.seed, trial.participant);
     }
@@ -209,11 +205,6 @@ pub fn arrange(trials: &mut [TrialStatistics]) {
             }
         }
     }
-}
-
-/// The fully simulated trials among these, in which every seed uses the same participant codes.
-fn simulated(trials: &[TrialStatistics]) -> impl Iterator<Item = &TrialStatistics> {
-    trials.iter().filter(|trial| trial.started.is_none())
 }
 
 pub type SignalSenderName = &'static str;
@@ -407,31 +398,19 @@ impl DetailTotals {
             for counts in [all.get_or_insert_default(), &mut own] {
                 counts.add(of, with, trial.human_presses as u32, WINDOW);
             }
-            self.similarity_by_trial.push(of_trial(trial, &own.similarity()));
+            let similarity = own.similarity();
+            self.similarity_by_trial.push(WizardAssistantSimilarity {
+                recording: trial.recording.clone(),
+                wizard_saw_advice: trial.wizard_saw_advice,
+                of_n: similarity.of_n,
+                with_n: similarity.with_n,
+                matched: similarity.matched,
+                recall: similarity.signal.recall,
+            });
         }
         if trial.condition == Condition::Wizard {
             offers.iter().for_each(|offer| self.offers.add(offer));
         }
         self.probes.extend(probes.map(|probes| (trial.participant.clone(), probes)));
-    }
-}
-
-fn of_trial(trial: &TrialStatistics, similarity: &Similarity) -> WizardAssistantSimilarity {
-    WizardAssistantSimilarity {
-        recording: trial.recording.clone(),
-        wizard_saw_advice: trial.wizard_saw_advice,
-        of_n: similarity.of_n,
-        with_n: similarity.with_n,
-        matched: similarity.matched,
-        recall: similarity.signal.recall,
-    }
-}
-
-pub(crate) fn kind_name(kind: ParticipantKind) -> &'static str {
-    match kind {
-        ParticipantKind::Simulated => "simulated",
-        ParticipantKind::Keyboard => "keyboard",
-        ParticipantKind::Display => "display",
-        ParticipantKind::External => "external",
     }
 }

@@ -221,10 +221,10 @@ fn phases_of_a_plan_are_those_of_the_display() {
     files.spec.display.questionnaire = AnswerDevice::Display;
     let study = files.study().expect("a plan");
     // The second trial of somebody: trial, questionnaire, debriefing of the wizard.
-    let wanted = tomcom_session::plan::WantedRecording { participant: 0, slot: 2, attempt: 1, instructed: true };
+    let wanted = WantedRecording { participant: 0, slot: 2, attempt: 1, instructed: true };
     let (spec, trial) = study.settings(wanted);
     let kitchen = Arc::new(files.kitchen.kitchen);
-    let mut engine = SessionEngine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen));
+    let mut engine = SessionEngine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen.clone()));
     let give = |engine: &mut SessionEngine, event: Event| {
         let outcome = engine.input(engine.session().time, event.clone());
         assert_eq!(outcome.refused, None, "{event:?}");
@@ -253,6 +253,15 @@ fn phases_of_a_plan_are_those_of_the_display() {
     assert_eq!(sight(engine.session()).question, None);
     give(&mut engine, phase(StudyPhase::Debriefing, 3));
     assert_eq!(stage(&engine), DisplayStage::Thanks);
+    give(&mut engine, Event::SessionEnded);
+    assert_eq!(stage(&engine), DisplayStage::Thanks);
+    // Whoever leaves before that comes back.
+    for slot in [1, 2] {
+        let (spec, trial) = study.settings(WantedRecording { slot, ..wanted });
+        let mut engine = SessionEngine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen.clone()));
+        give(&mut engine, Event::SessionEnded);
+        assert_eq!(stage(&engine), DisplayStage::Over, "slot {slot}");
+    }
 }
 
 #[test]
@@ -450,6 +459,15 @@ fn a_press_without_effect_says_why_unless_the_session_switches_that_off() {
         ("assembly_board", Some("not_stacked")),
         ("plate", None),
         ("serve 1", Some("not_served")),
+        ("take salmon", None),
+        ("assembly_board", Some("needs_other_step")),
+        ("counter", None),
+        ("assembly_board", None),
+        ("trash", None),
+        ("counter", None),
+        ("assembly_board", None),
+        ("take nori", None),
+        ("assembly_board", Some("place_full")),
     ];
     let buttons: Vec<&str> = presses.iter().map(|(button, _)| *button).collect();
     let orders = |told: Vec<Option<String>>| -> Vec<(String, Option<String>)> {

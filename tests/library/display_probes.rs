@@ -193,9 +193,10 @@ fn questions_are_worded_in_the_displays_language() {
     assert_eq!(asked(SESSIONS[0], "en", "cooking_pot"), "What is in the cooking pot?");
     assert_eq!(asked(SESSIONS[0], "de", "cooking_pot"), "Was ist im Kochtopf?");
     assert_eq!(asked(SESSIONS[0], "en", "recipe of tuna maki"), "What goes into tuna maki?");
-    assert_eq!(asked(SESSIONS[0], "de", "recipe of tuna maki"), "Was gehört in Thunfisch-Maki?");
+    assert_eq!(asked(SESSIONS[0], "de", "recipe of tuna maki"), "Thunfisch-Maki: Was gehört hinein?");
     assert_eq!(asked(SESSIONS[0], "en", "order_2"), "What does order 2 ask for?");
     assert_eq!(asked(SESSIONS[0], "de", "order_2"), "Welches Gericht verlangt Bestellung 2?");
+    assert_eq!(asked(SESSIONS[1], "de", "recipe of classic burger"), "Klassischer Burger: Was gehört hinein?");
     assert_eq!(asked(SESSIONS[1], "en", "robot_hand"), "What does the robot hold?");
     assert_eq!(asked(SESSIONS[1], "de", "shelf"), "Was liegt im Regal?");
     // A recipe is worded by its items, also where its stack has the name of another dish.

@@ -72,6 +72,7 @@ fn only_requests_to_this_machine_by_its_own_names_are_answered() {
     let own = [
         format!("127.0.0.1:{port}"),
         "127.0.0.1".to_string(),
+        format!("127.8.8.8:{port}"),
         format!("localhost:{port}"),
         "localhost".to_string(),
         format!("LOCALHOST:{port}"),

@@ -48,17 +48,20 @@ fn patient(command: &str) -> ExternalMind {
     ExternalMind { wait_s: 600.0, ..ExternalMind::new(command) }
 }
 
-/// Runs a trial with a program; its events.
-fn run(mind: ExternalMind, minds: &dyn ExternalMinds) -> Vec<Event> {
-    let mut engine = engine_of(files(30.0, mind), 0);
+/// Runs a trial with its program; its events.
+fn run_session(setup: SessionSetup, minds: &dyn ExternalMinds) -> (SessionEngine, Vec<Event>) {
+    let mut engine = engine_of(setup, 0);
     let mut events = Vec::new();
-    let outside = Outside { minds, now_ns: || 0 };
-    let kept: Result<_, ()> = run_with(&mut engine, outside, |stamped| {
+    let kept: Result<_, ()> = run_with(&mut engine, Outside { minds, now_ns: || 0 }, |stamped| {
         events.push(stamped.event.clone());
         Ok(())
     });
     kept.expect("nothing is written");
-    events
+    (engine, events)
+}
+
+fn run(mind: ExternalMind, minds: &dyn ExternalMinds) -> Vec<Event> {
+    run_session(files(30.0, mind), minds).1
 }
 
 fn faults(events: &[Event]) -> Vec<(MindFault, String)> {
@@ -81,9 +84,7 @@ type Answer = fn(&Value) -> Value;
 
 /// A connection whose answers a function gives, with what it was asked.
 #[derive(Debug)]
-struct Scripted {
-    answer: Answer,
-}
+struct Scripted(Answer);
 
 #[derive(Debug)]
 struct ScriptedWriter(std::sync::mpsc::Sender<MindNews>, Answer);
@@ -111,7 +112,7 @@ impl MindReader for ScriptedReader {
 impl ExternalMinds for Scripted {
     fn open(&self, _: &ExternalMind) -> Result<MindConnection, String> {
         let (sender, receiver) = std::sync::mpsc::channel();
-        let to = Box::new(ScriptedWriter(sender, self.answer));
+        let to = Box::new(ScriptedWriter(sender, self.0));
         Ok(MindConnection { to, from: Box::new(ScriptedReader(receiver)) })
     }
 
@@ -135,10 +136,8 @@ fn a_program_acts_and_its_recording_needs_no_program() {
     let again = SimulationRequest { files: setup, trials: 2, shard: SimulationShard::WHOLE, out };
     let again = simulate(&again, || ()).expect("recordings");
     let told = tomcom::run::simulate::describe(&again);
-    assert!(
-        told.contains("\n2 trials are of an earlier run; if the program was changed since, delete them\n"),
-        "{told}"
-    );
+    let earlier = "\n2 trials are of an earlier run; if the program was changed since, delete them\n";
+    assert!(told.contains(earlier), "{told}");
     for recording in recordings {
         let log = fs::read_to_string(recording.join(LOG_NAME)).expect("a recording");
         assert!(log.contains(r#""signal_shown","by":"assistant""#), "{log}");
@@ -173,7 +172,7 @@ fn questions_say_what_happened_and_fit_the_schema() {
             "belief": belief})
     }
     let mind = ExternalMind { estimate: true, ..ExternalMind::new("scripted") };
-    let events = run(mind, &Scripted { answer: check });
+    let events = run(mind, &Scripted(check));
     assert_eq!(faults(&events), []);
     let advice = events.iter().filter_map(|event| match event {
         Event::Advised(advice) => Some(advice),
@@ -194,7 +193,7 @@ fn what_happened_since_is_told_once() {
         SINCE.lock().expect("one thread").extend(since);
         json!({"id": question["id"]})
     }
-    let events = run(ExternalMind::new("scripted"), &Scripted { answer: note });
+    let events = run(ExternalMind::new("scripted"), &Scripted(note));
     let since = SINCE.lock().expect("one thread");
     let told = |what: &str| since.iter().filter(|one| one["what"] == what).count();
     let presses = events.iter().filter(|event| matches!(event, Event::Press { .. })).count();
@@ -275,7 +274,7 @@ fn answers_that_cannot_be_used_count_as_silence() {
         ),
     ];
     for (answer, wanted, words) in wrong {
-        let events = run(ExternalMind::new("scripted"), &Scripted { answer });
+        let events = run(ExternalMind::new("scripted"), &Scripted(answer));
         let found = faults(&events);
         assert!(found.iter().all(|(fault, found)| *fault == wanted && found.contains(words)), "{found:?}");
         assert!(found.len() > 5, "every question had such an answer: {found:?}");
@@ -283,7 +282,7 @@ fn answers_that_cannot_be_used_count_as_silence() {
         assert_eq!(aborted(&events), None, "the trial went on");
     }
     // An answer to no question is passed over, and the question still waits for its own.
-    let events = run(ExternalMind::new("scripted"), &Scripted { answer: |_| json!({"id": 1_000_000}) });
+    let events = run(ExternalMind::new("scripted"), &Scripted(|_| json!({"id": 1_000_000})));
     let kinds: Vec<MindFault> = faults(&events).into_iter().map(|(fault, _)| fault).collect();
     assert_eq!(kinds, [MindFault::Unasked, MindFault::Silent]);
     assert!(aborted(&events).is_some_and(|reason| reason.contains("no answer within 10 s")));
@@ -331,13 +330,7 @@ fn an_answer_before_the_question_and_a_flood_are_told() {
     let flood = patient(&agent(HELLO, "yes '{}'"));
     let mut long = files(900.0, flood);
     long.spec.trial.presses = 10_000;
-    let mut engine = engine_of(long, 0);
-    let mut events = Vec::new();
-    let kept: Result<_, ()> = run_with(&mut engine, Outside { minds: &LocalMinds, now_ns: || 0 }, |stamped| {
-        events.push(stamped.event.clone());
-        Ok(())
-    });
-    kept.expect("nothing is written");
+    let (_, events) = run_session(long, &LocalMinds);
     let found = faults(&events);
     assert_eq!(found.len() as u64, MOST_FAULTS + 1);
     assert_eq!(found.last().map(|(fault, _)| *fault), Some(MindFault::GivenUp));
@@ -397,7 +390,7 @@ fn a_comparison_takes_the_answers_from_the_recording() {
     let request = SenderComparisonSettings { with: vec![ConceptName::Tom], window: 5 };
     let mut follower =
         SenderComparisonFollower::new(session, CostToGo::new(engine.session().kitchen.clone()), &request);
-    let outside = Outside { minds: &Scripted { answer: first_signal }, now_ns: || 0 };
+    let outside = Outside { minds: &Scripted(first_signal), now_ns: || 0 };
     let mut advised = 0;
     run_with(&mut engine, outside, |stamped| {
         advised += usize::from(matches!(stamped.event, Event::Advised(_)));
@@ -441,11 +434,10 @@ fn a_tournament_compares_in_pairs_and_goes_on_where_it_was_cut() {
     let out = empty_folder("tournament");
     let mut setup = session_file("default");
     (setup.spec.trial.seconds, setup.spec.robot.arm) = (60.0, ArmKind::Timed);
-    let shown = FIRST;
     let fails = ExternalMind::new("exit 7; /");
     let concepts = vec![
         ConceptName::Tom.into(),
-        ConceptSpec::External(patient(&agent(HELLO, shown))),
+        ConceptSpec::External(patient(&agent(HELLO, FIRST))),
         ConceptSpec::External(fails),
     ];
     let request = |trials, shard| {
@@ -510,17 +502,6 @@ impl ExternalMinds for Watched {
     }
 }
 
-fn run_participant(setup: SessionSetup, minds: &dyn ExternalMinds) -> (SessionEngine, Vec<Event>) {
-    let mut engine = engine_of(setup, 0);
-    let mut events = Vec::new();
-    let kept: Result<_, ()> = run_with(&mut engine, Outside { minds, now_ns: || 0 }, |stamped| {
-        events.push(stamped.event.clone());
-        Ok(())
-    });
-    kept.expect("nothing is written");
-    (engine, events)
-}
-
 /// Presses the buttons one after another, every second.
 fn presses_in_turn(question: &Value) -> Value {
     let buttons = ["take rice", "cutting_board", "trash"];
@@ -543,7 +524,7 @@ fn a_participant_is_told_what_the_display_shows_and_nothing_else() {
     let mut setup = with_participant(60.0);
     // Signals, advice and estimates are there, and have no way to the participant.
     (setup.spec.trial.condition, setup.spec.assistant.concept) = (Condition::Assistant, ConceptName::Tom.into());
-    let (_, events) = run_participant(setup, &Watched { answers: Scripted { answer }, told: &TOLD });
+    let (_, events) = run_session(setup, &Watched { answers: Scripted(answer), told: &TOLD });
     assert!(events.iter().any(|event| matches!(event, Event::SignalShown { .. })), "a signal was shown");
     assert!(*ASKED.lock().expect("one thread") > 20);
 }
@@ -571,7 +552,7 @@ fn a_participants_told_beliefs_are_known_beliefs() {
         answer["belief"] = Value::Object(first.collect());
         answer
     }
-    let (engine, events) = run_participant(with_participant(30.0), &Scripted { answer });
+    let (engine, events) = run_session(with_participant(30.0), &Scripted(answer));
     assert_eq!(faults(&events), []);
     let judged = engine.judged();
     assert!(judged.len() > 10 && judged.iter().all(|press| press.belief_known));
@@ -586,19 +567,19 @@ fn a_participants_wrong_answers_are_recorded_and_it_waits() {
         (|question| json!({"id": question["id"], "belief": {}}), "a belief without"),
     ];
     for (answer, words) in wrong {
-        let (_, events) = run_participant(with_participant(30.0), &Scripted { answer });
+        let (_, events) = run_session(with_participant(30.0), &Scripted(answer));
         let found = faults(&events);
         assert!(!found.is_empty() && found.iter().all(|(_, found)| found.contains(words)), "{found:?}");
         assert!(!events.iter().any(|event| matches!(event, Event::Press { agent: Agent::Human, .. })));
         assert_eq!(aborted(&events), None);
     }
     // One that always wants to be asked again at once does not stop the clock.
-    let restless = Scripted { answer: |question| json!({"id": question["id"], "after_s": 0.0}) };
-    let (engine, events) = run_participant(with_participant(10.0), &restless);
+    let restless = Scripted(|question| json!({"id": question["id"], "after_s": 0.0}));
+    let (engine, events) = run_session(with_participant(10.0), &restless);
     assert_eq!((faults(&events), engine.session().is_trial_over()), (vec![], true));
     let mut setup = with_participant(10.0);
     setup.spec.participant.external = Some("echo no; exit 5".to_string());
-    let (_, events) = run_participant(setup, &LocalMinds);
+    let (_, events) = run_session(setup, &LocalMinds);
     assert!(aborted(&events).is_some_and(|reason| reason.contains("external participant")), "{events:?}");
 }
 
@@ -606,7 +587,6 @@ fn a_participants_wrong_answers_are_recorded_and_it_waits() {
 fn a_participant_that_is_not_waited_for_has_one_question_at_a_time() {
     let mut engine = engine_of(with_participant(30.0), 0);
     let mut dialogue = ParticipantDialogue::new("x y");
-    let second = SessionTime::from_secs_f64;
     let told = |outcome: DialogueOutcome| match &outcome.events[..] {
         [Event::External(event)] => event.clone(),
         other => panic!("{other:?}"),
@@ -614,22 +594,22 @@ fn a_participant_that_is_not_waited_for_has_one_question_at_a_time() {
     let display = |number: u64| move || json!(number);
     let _ = engine.input(SessionTime::ZERO, Event::TrialStarted);
     let session = engine.session();
-    assert_eq!(dialogue.question(session, second(1.0), display(1)), None, "it has not begun");
+    assert_eq!(dialogue.question(session, at(1.0), display(1)), None, "it has not begun");
     let began = told(dialogue.take(session, r#"{"id":0,"protocol":1,"name":"slow"}"#));
     assert_eq!(began, ExternalEvent::Began { role: MindRole::Participant, name: "slow".to_string() });
-    assert!(dialogue.question(session, second(1.0), display(1)).is_some_and(|line| line.contains("\"id\":1,")));
-    assert_eq!(dialogue.question(session, second(2.0), display(2)), None, "the first question has no answer yet");
-    assert_eq!(dialogue.silence(second(10.0)), DialogueOutcome::default());
-    assert!(matches!(told(dialogue.silence(second(11.0))), ExternalEvent::Fault { fault: MindFault::Silent, .. }));
-    assert_eq!(dialogue.silence(second(12.0)), DialogueOutcome::default(), "told once");
+    assert!(dialogue.question(session, at(1.0), display(1)).is_some_and(|line| line.contains("\"id\":1,")));
+    assert_eq!(dialogue.question(session, at(2.0), display(2)), None, "the first question has no answer yet");
+    assert_eq!(dialogue.silence(at(10.0)), DialogueOutcome::default());
+    assert!(matches!(told(dialogue.silence(at(11.0))), ExternalEvent::Fault { fault: MindFault::Silent, .. }));
+    assert_eq!(dialogue.silence(at(12.0)), DialogueOutcome::default(), "told once");
     // Its press is timed from the question, so it is due already.
     assert_eq!(dialogue.take(session, r#"{"id":1,"press":"trash","after_s":2.0}"#), DialogueOutcome::default());
-    assert_eq!(dialogue.due(session), Some(second(3.0)));
-    assert_eq!(dialogue.question(session, second(13.0), display(3)), None, "a press is under way");
+    assert_eq!(dialogue.due(session), Some(at(3.0)));
+    assert_eq!(dialogue.question(session, at(13.0), display(3)), None, "a press is under way");
     assert_eq!(dialogue.act(session).len(), 1);
     let twice = told(dialogue.take(session, r#"{"id":1}"#));
     assert!(matches!(twice, ExternalEvent::Fault { fault: MindFault::Unasked, .. }));
-    assert!(dialogue.question(session, second(13.0), display(3)).is_some_and(|line| line.contains("\"id\":2,")));
+    assert!(dialogue.question(session, at(13.0), display(3)).is_some_and(|line| line.contains("\"id\":2,")));
     let over = dialogue.failed(MindFault::Ended, "exit code 1");
     assert!(over.ends && dialogue.due(session).is_none());
     assert_eq!(dialogue.take(session, r#"{"id":2,"press":"trash"}"#), DialogueOutcome::default());
@@ -725,16 +705,9 @@ fn a_wizard_is_offered_what_a_program_names_with_its_reason() {
     let mut setup = files(60.0, ExternalMind::new("scripted"));
     setup.spec.trial.condition = Condition::Wizard;
     setup.spec.assistant.shadow = ShadowMode::On;
-    let mut engine = engine_of(setup, 0);
-    let mut offers = Vec::new();
-    let outside = Outside { minds: &Scripted { answer: first_signal }, now_ns: || 0 };
-    let kept: Result<_, ()> = run_with(&mut engine, outside, |stamped| {
-        if let Event::OfferOpened(offer) = &stamped.event {
-            offers.push(offer.clone());
-        }
-        Ok(())
-    });
-    kept.expect("nothing is written");
+    let (_, events) = run_session(setup, &Scripted(first_signal));
+    let offer = |event: &Event| if let Event::OfferOpened(offer) = event { Some(offer.clone()) } else { None };
+    let offers: Vec<_> = events.iter().filter_map(offer).collect();
     assert!(!offers.is_empty());
     for offer in offers {
         assert_eq!((offer.worth, offer.words.as_deref()), (None, Some("it comes first")), "{:?}", offer.what);

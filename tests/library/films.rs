@@ -131,10 +131,8 @@ fn a_film_that_does_not_fit_is_refused_with_what_is_in_it() {
     assert!(matches!(align(&CAMERA.film(&DRAWN_S), &[]), Err(AlignmentRefusal::FewFit { fit: 0, .. })));
 }
 
-#[test]
-fn films_of_a_recording_are_kept_by_file_and_read_back() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let film = |file: &str, offset_s: f64| AttachedFilm {
+fn film(file: &str, offset_s: f64) -> AttachedFilm {
+    AttachedFilm {
         file: PathText(file.into()),
         sha256: "00".repeat(32),
         by: FilmAlignmentSource::Flashes,
@@ -145,7 +143,12 @@ fn films_of_a_recording_are_kept_by_file_and_read_back() {
         frame_ms: Some(33.33),
         length_s: Some(340.0),
         copies_of: Vec::new(),
-    };
+    }
+}
+
+#[test]
+fn films_of_a_recording_are_kept_by_file_and_read_back() {
+    let folder = tempfile::tempdir().expect("a folder");
     assert_eq!(video_file::read(folder.path()).expect("no file"), RecordingFilms::default());
     let mut films = RecordingFilms::default();
     films.attach(film("/films/room.mp4", 1.0));
@@ -191,19 +194,8 @@ fn filmed(name: &str) -> (PathBuf, CodedRecording) {
     files.spec.robot.arm = ArmKind::Timed;
     files.spec.participant.kind = ParticipantKind::Simulated;
     let recording = simulate_into(files, 1, &out).remove(0);
-    let film = AttachedFilm {
-        file: PathText("room 1.mp4".into()),
-        sha256: "00".repeat(32),
-        by: FilmAlignmentSource::Offset,
-        offset_s: -3.0,
-        drift_ppm: 50.0,
-        residual_ms: None,
-        flashes: None,
-        frame_ms: None,
-        length_s: None,
-        copies_of: Vec::new(),
-    };
-    video_file::write(&recording, &RecordingFilms { films: vec![film] }).expect("written");
+    let films = vec![AttachedFilm { drift_ppm: 50.0, ..film("room 1.mp4", -3.0) }];
+    video_file::write(&recording, &RecordingFilms { films }).expect("written");
     let coded = CodedRecording::open(&recording).expect("a recording");
     assert!(coded.errors.len() >= 3, "{} errors", coded.errors.len());
     (recording, coded)

@@ -1,18 +1,14 @@
 //! Which parameters a fit has, and what it says about recordings of different human models.
 
-use std::fs;
-use std::path::Path;
-
-use tomcom::run::files::read_session;
-use tomcom::run::simulate::{SimulationRequest, simulate};
 use tomcom_core::mind::fitting::HumanModelParameter;
 use tomcom_core::mind::model::HumanModel;
 use tomcom_core::mind::model::{PAPER_2021, PLAIN};
-use tomcom_session::headless::SimulationShard;
 use tomcom_session::log::rule;
 use tomcom_study::analysis::fitting::{FitSettings, choose, describe};
 use tomcom_study::fit::{FitTrials, fit};
 use tomcom_study::gathered::GatheredRecordings;
+
+use crate::support::*;
 
 #[test]
 fn a_fit_has_the_parameters_that_its_model_uses() {
@@ -35,19 +31,17 @@ fn a_fit_has_the_parameters_that_its_model_uses() {
 
 #[test]
 fn a_fit_says_which_recordings_were_made_with_which_model() {
-    let root = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fit");
-    let _ = fs::remove_dir_all(&root);
+    let root = empty_folder("fit");
     let mut paths = Vec::new();
     for (name, model, tau) in
         [("a", PAPER_2021, 4.0), ("b", PLAIN, 4.0), ("c", PLAIN, 3.0), ("d", PAPER_2021, 4.0), ("e", PLAIN, 5.0)]
     {
-        let mut files = read_session(Path::new("sessions/default.toml")).expect("the default session");
-        files.spec.robot.arm = tomcom_session::settings::ArmKind::Timed;
+        let mut files = session_file("default");
+        files.spec.robot.arm = ArmKind::Timed;
         files.spec.trial.presses = 6;
         files.spec.human = model;
         files.spec.human.decision.tau = tau;
-        let request = SimulationRequest { files, trials: 1, shard: SimulationShard::WHOLE, out: root.join(name) };
-        simulate(&request, || ()).expect("a folder");
+        simulate_into(files, 1, &root.join(name));
         paths.push(root.join(name));
     }
     rule(&root.join("e/seed1-S001"), true, "the tracker slipped").expect("excluded");

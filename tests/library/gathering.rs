@@ -52,6 +52,19 @@ fn copy(recording: &Path, to: &Path) -> PathBuf {
     to.to_path_buf()
 }
 
+/// Records this log in two parts, the second of which continues the first.
+fn record_parts(root: &Path, name: &str, log: &str) -> (PathBuf, PathBuf) {
+    let lines: Vec<&str> = log.lines().collect();
+    let half = lines.len() / 2;
+    let first = record(&root.join(name), &(lines[..half].join("\n") + "\n"), |_| ());
+    let event: Value = serde_json::from_str(lines[half]).expect("an event");
+    let rest = format!("{}\n{}\n", lines[0], lines[half..].join("\n"));
+    let second = record(&root.join(format!("{name}-part2")), &rest, |header| {
+        header["continues"] = json!({ "recording": name, "events": event["seq"], "t_ns": event["t_ns"] });
+    });
+    (first, second)
+}
+
 fn number(paths: &[PathBuf]) -> usize {
     NamedRecordings::find(paths, &[]).expect("recordings").number()
 }
@@ -145,13 +158,8 @@ fn what_is_none_of_the_study_is_left_out_and_named() {
         header["session"].as_object_mut().expect("settings").remove("step");
     });
     let extent = AnalysisScope { concepts: false, events: false };
-    let request = AnalysisRequest {
-        paths: vec![out.clone()],
-        out: folder("foreign-results"),
-        extent,
-        raters: None,
-        frozen: None,
-    };
+    let (paths, results) = (vec![out.clone()], folder("foreign-results"));
+    let request = AnalysisRequest { paths, out: results, extent, raters: None, frozen: None };
     for plans in [vec![], vec!["paper".to_string()]] {
         let found = NamedRecordings::find(&request.paths, &plans).expect("recordings");
         let (figures, report) = pass::study(&request, &found, || ()).expect("analysed");
@@ -385,15 +393,7 @@ fn codes_beside_a_copy_alone_are_named_and_are_not_lost() {
 #[test]
 fn a_copy_of_an_earlier_part_is_no_recording_of_its_own() {
     let root = folder("parts");
-    let log = log(&root);
-    let lines: Vec<&str> = log.lines().collect();
-    let half = lines.len() / 2;
-    let first = record(&root.join("P01-1"), &(lines[..half].join("\n") + "\n"), |_| ());
-    let rest = lines[..1].iter().chain(&lines[half..]).copied().collect::<Vec<&str>>().join("\n") + "\n";
-    let event: Value = serde_json::from_str(lines[half]).expect("an event");
-    record(&root.join("P01-1-part2"), &rest, |header| {
-        header["continues"] = json!({ "recording": "P01-1", "events": event["seq"], "t_ns": event["t_ns"] });
-    });
+    let (first, _) = record_parts(&root, "P01-1", &log(&root));
     assert_eq!(number(std::slice::from_ref(&root)), 1);
     assert_eq!(number(&[root.join("P01-1"), root.join("P01-1-part2")]), 1, "a part is read with the last one");
     copy(&first, &root.join("P01-1 - Copy"));
@@ -431,12 +431,8 @@ fn recorded(out: &Path) -> Study {
     let simulated = out.join("simulated");
     for recording in simulate_into(files, 4, &simulated) {
         let log = fs::read_to_string(recording.join(LOG_NAME)).expect("a log");
-        let (head, events) = log.split_once('\n').expect("a header");
-        let mut header: Value = serde_json::from_str(head).expect("a header");
-        header["started"] = json!("2026-03-14T10:00:00Z");
         let name = recording.file_name().expect("a name").to_string_lossy().replace("seed1-", "");
-        fs::create_dir_all(out.join(&name)).expect("a folder");
-        fs::write(out.join(name).join(LOG_NAME), format!("{header}\n{events}")).expect("written");
+        record(&out.join(name), &log, |_| ());
     }
     fs::remove_dir_all(simulated).expect("removed");
     study
@@ -553,17 +549,8 @@ fn every_reader_has_the_corrected_code_until_it_is_taken_back() {
 fn all_parts_of_a_recording_are_corrected() {
     let out = folder("corrected-parts");
     recorded(&out);
-    let whole = out.join("P02-1");
-    let log = fs::read_to_string(whole.join(LOG_NAME)).expect("a log");
-    let lines: Vec<&str> = log.lines().collect();
-    let half = lines.len() / 2;
-    let part = out.join("P02-1-part2");
-    fs::create_dir_all(&part).expect("a folder");
-    let event: Value = serde_json::from_str(lines[half]).expect("an event");
-    let mut header: Value = serde_json::from_str(lines[0]).expect("a header");
-    header["continues"] = json!({ "recording": "P02-1", "events": event["seq"], "t_ns": event["t_ns"] });
-    fs::write(part.join(LOG_NAME), format!("{header}\n{}\n", lines[half..].join("\n"))).expect("written");
-    fs::write(whole.join(LOG_NAME), lines[..half].join("\n") + "\n").expect("written");
+    let log = fs::read_to_string(out.join("P02-1").join(LOG_NAME)).expect("a log");
+    let (whole, part) = record_parts(&out, "P02-1", &log);
     let told = correct(&whole, Some("P03"), "why").expect_err("a later part continues it").to_string();
     assert!(told.contains("was continued already"), "{told}");
     let told = rule(&whole, true, "why").expect_err("a later part continues it");

@@ -1,6 +1,7 @@
 //! Streams of the Lab Streaming Layer: what they are called, what their channels are, and what is sent of a session. And gaze that comes
 //! in.
 
+use strum::VariantArray;
 use tomcom_devices::lsl::{LslError, load};
 use tomcom_devices::lsl::{
     LslSampleConverter, LslSampleValues, StreamDescription, StreamSample, code, describe, event_text,
@@ -68,7 +69,7 @@ fn numbers(sample: &StreamSample) -> &[f64] {
 #[test]
 fn every_event_but_samples_is_a_marker_with_the_fields_of_the_log() {
     for name in ["format-3-hand", "format-3-simulated", "format-3-offers", "format-3-probes"] {
-        let (samples, events, _) = sent(name, &LslOutlet::ALL);
+        let (samples, events, _) = sent(name, LslOutlet::VARIANTS);
         let is_event = |sample: &&StreamSample| match &sample.values {
             LslSampleValues::Texts(texts) => !texts[0].contains(RECORDING),
             LslSampleValues::Numbers(_) => true,
@@ -252,7 +253,7 @@ fn beliefs_and_net_benefits_are_the_logs() {
 #[test]
 fn streams_are_named_after_the_participant_and_described_with_the_layout() {
     let kitchen = session_file("default").kitchen.kitchen;
-    let streams = describe(&spec(&LslOutlet::ALL), &kitchen);
+    let streams = describe(&spec(LslOutlet::VARIANTS), &kitchen);
     let names: Vec<&str> = streams.iter().map(|stream| stream.name.as_str()).collect();
     assert_eq!(names[..2], ["tomcom-markers-P07", "tomcom-events-P07"]);
     let counts: Vec<usize> = streams.iter().map(|stream| stream.channels.len()).collect();

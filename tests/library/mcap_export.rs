@@ -10,9 +10,7 @@ use crate::support::*;
 
 /// A golden recording in a folder of its own.
 fn golden(name: &str, test: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("mcap").join(test).join(name);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("a folder");
+    let folder = empty_folder(Path::new("mcap").join(test).join(name));
     fs::copy(format!("tests/golden/{name}.jsonl"), folder.join("events.jsonl")).expect("a golden recording");
     folder
 }

@@ -11,9 +11,9 @@ use tomcom_core::mind::{ChoiceModel, RecordedBelief};
 use tomcom_people::wizard::WizardKind;
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::headless;
-use tomcom_session::watcher::SenderComparisonSettings;
+use tomcom_session::watcher::{SenderComparisonFollower, SenderComparisonSettings};
 use tomcom_session::wizard_log::{self, WizardSummary};
-use tomcom_study::analysis::comparison_summary::SenderComparer;
+use tomcom_study::analysis::comparison_summary::RecordingSenderComparison;
 use tomcom_study::analysis::likelihood::PressLogLikelihood;
 use tomcom_study::analysis::recording_summary::ExclusionStatus;
 use tomcom_study::analysis::trial_summary::{FalseBeliefErrorSummary, TrialSummary};
@@ -143,14 +143,16 @@ fn a_running_session_judges_the_wizards_signals_as_compare_does() {
     let mut engine = SessionEngine::new(kitchen.clone(), spec.clone(), 0, CostToGo::new(kitchen.clone()));
     // As a live session follows itself.
     let mut live = SessionFollower::new(start(), CostToGo::new(kitchen.clone())).without_causes();
-    let mut compare = SenderComparer::new(start(), &SenderComparisonSettings { with: Vec::new(), window: WINDOW });
+    let request = SenderComparisonSettings { with: Vec::new(), window: WINDOW };
+    let mut compare = SenderComparisonFollower::new(start(), CostToGo::new(kitchen.clone()), &request);
     let mut follow = |stamped: &TimestampedEvent| {
         live.apply(stamped).expect("what was recorded can be replayed");
-        compare.add(stamped)
+        compare.apply(stamped).map(drop)
     };
     headless::run(&mut engine, &mut follow).expect("what was recorded can be compared");
     let at_console = WizardSummary::from_follower(&live).measures;
-    let compared = compare.finish("S001".to_string(), ExclusionStatus::default()).wizard.expect("a wizard's trial");
+    let compared = RecordingSenderComparison::new("S001".to_string(), compare, ExclusionStatus::default());
+    let compared = compared.wizard.expect("a wizard's trial");
     assert_eq!(at_console, compared.measures);
     assert!(at_console.signals > 0 && at_console.episodes > Some(0), "{at_console:?}");
     let printed = wizard_log::describe(&compared);

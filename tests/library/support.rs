@@ -61,6 +61,15 @@ pub fn engine_of(files: SessionSetup, trial: u64) -> SessionEngine {
     SessionEngine::new(kitchen.clone(), files.spec, trial, CostToGo::new(kitchen))
 }
 
+/// A live recording of a trial in this folder, and its engine.
+pub fn live_recording(files: SessionSetup, trial: u64, out: &Path) -> (LogWriter, SessionEngine) {
+    let (layout, recipes) = (files.kitchen.layout.clone(), files.kitchen.recipes.clone());
+    let mut header = LogHeader::new(files.spec.clone(), trial, layout, recipes);
+    header.started = Some("2026-03-14T09:00:00.000Z".to_string());
+    let log = LogWriter::create_live(out, "2026-03-14", &header).expect("the folder can be written");
+    (log, engine_of(files, trial))
+}
+
 pub fn at(seconds: f64) -> SessionTime {
     SessionTime::from_secs_f64(seconds)
 }

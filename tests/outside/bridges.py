@@ -16,9 +16,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from console import Console
+from console import Console, recorded, verify
 from page import plain
-from pupil import recorded, verify
 from scene_camera import CAMERA, DISTORTION, Pose, screen
 
 HERE, EXAMPLES = Path(__file__).parent, Path("examples")

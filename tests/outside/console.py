@@ -1,6 +1,8 @@
 """A live console in a pseudo terminal: keys go in as bytes, the screen is what a terminal emulator makes of the output."""
 
+import argparse
 import fcntl
+import json
 import os
 import pty
 import re
@@ -143,6 +145,48 @@ class Console:
         os.close(self.master)
 
 
+class Tmux:
+    """A live session in a terminal of its own, whose screen tmux makes."""
+
+    def __init__(self, tomcom, out, *arguments):
+        self.server, self.out = f"tomcom-outside-{os.getpid()}", Path(out)
+        self.tmux("-f", "/dev/null", "new-session", "-d", "-x", "120", "-y", "40", tomcom, *arguments, "--out", out)
+        self.wait_for("READY")
+
+    def tmux(self, *arguments):
+        return subprocess.run(["tmux", "-L", self.server, *map(str, arguments)], capture_output=True, text=True).stdout
+
+    def screen(self):
+        return "\n".join(line.rstrip() for line in self.tmux("capture-pane", "-p").split("\n")).rstrip()
+
+    def key(self, key):
+        self.tmux("send-keys", key)
+
+    def wait_for(self, pattern, seconds=60):
+        until = time.monotonic() + seconds
+        while not re.search(pattern, self.screen()):
+            assert time.monotonic() < until, f"{pattern} did not appear:\n{self.screen()}"
+            time.sleep(0.02)
+
+    def quit(self):
+        """Quits and gives back the recording's folder."""
+        self.key("C-c")
+        self.wait_for("Quit tomcom")
+        self.key("y")
+        until = time.monotonic() + 30
+        while self.screen():
+            assert time.monotonic() < until, f"the console does not end:\n{self.screen()}"
+            time.sleep(0.05)
+        (recording,) = self.out.iterdir()
+        return recording
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.tmux("kill-server")
+
+
 class Log:
     """The end of a log that grows."""
 
@@ -166,6 +210,25 @@ def session_file(folder, **participant):
         f"[signals]\ncool_down_s = 0.0\n[participant]\n{settings}\n"
     )
     return path
+
+
+def recorded(recording, kind=None):
+    """The events of a recording; with `kind`, those of this one."""
+    events = map(json.loads, (recording / "events.jsonl").read_text().splitlines()[1:])
+    return [event for event in events if kind is None or event["kind"] == kind]
+
+
+def verify(tomcom, recording):
+    done = subprocess.run([tomcom, "replay", recording, "--verify", "--format", "json"], capture_output=True, text=True)
+    assert done.returncode == 0 and json.loads(done.stdout)["verified"] is True, done
+
+
+def parser(doc):
+    """Of a check's arguments."""
+    made = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
+    made.add_argument("tomcom")
+    made.add_argument("folder", type=Path)
+    return made
 
 
 def percentile(values, share):

@@ -11,7 +11,7 @@ from page import Page, browser, plain
 
 CARD = "document.querySelector('.recipe')"
 IS_OPEN = f"{CARD}.classList.contains('open')"
-WORDS = {"en": ("Your next step:", "take rice"), "de": ("Ihr nächster Schritt:", "Reis nehmen")}
+WORDS = {"en": ("Your next step:", "take rice"), "de": ("Ihr nächster Schritt:", "nehmen: Reis")}
 
 
 def proposes(tomcom, chromium, folder, seed, language):

@@ -21,6 +21,14 @@ AudioContext.prototype.createOscillator = function () { const tone = make.call(t
 window.AudioContext = class extends Made { constructor(...all) { super(...all); contexts += 1; } };
 }"""
 UPRIGHT = (390, 844)
+# What the robot's side says when the robot is slow: at once, and once that lasts.
+SLOW = """async () => {
+    const says = () => document.getElementById("stage").dataset.robot;
+    Stage.show({ ...Stage.shown(), robot_does: "slow" });
+    const before = says();
+    await new Promise((then) => setTimeout(then, 2500));
+    return [before === "slow", says()];
+}"""
 
 
 def heard(page):
@@ -95,6 +103,7 @@ def counts(tomcom, chromium, folder, seed):
         page = Page(chromium, url())
         start(console, page)
         assert page.ask("[Stage.shown().served, Stage.shown().clock, document.querySelector('.status').innerText.trim()]") == [None, None, ""]
+        assert page.ask(SLOW) == [False, "slow"]
         page.close()
         console.quit()
     print("clock: it goes, stands in a pause, and is told to a page that is loaded again; without the settings nothing is told", flush=True)
@@ -215,6 +224,11 @@ def upright(tomcom, chromium, folder, kitchen, seed):
         page.wait_for("document.querySelector('.recipe').classList.contains('open')")
         page.page.wait_for_timeout(300)
         page.screenshot(folder / "recipe.png")
+        # Keys are shown once one is pressed.
+        keys = "[...document.querySelectorAll('.key')].some((made) => made.checkVisibility())"
+        assert not page.ask(keys)
+        page.page.keyboard.press("m")
+        assert page.ask(keys)
         assert not [message for message in page.said if message["kind"] == "pointer"], "gaze from an upright page"
         before = page.ask("JSON.stringify(Stage.shown().contents)")
         page.page.set_viewport_size({"width": UPRIGHT[1], "height": UPRIGHT[0]})

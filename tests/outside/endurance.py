@@ -3,12 +3,10 @@
     tests/outside/endurance.py TOMCOM FOLDER --minutes 120
 """
 
-import argparse
 import os
 import time
-from pathlib import Path
 
-from console import percentile
+from console import parser, percentile
 from latency import SIGNALS, begin, send
 
 # Memory in the last quarter over that in the second: the first is for what fills up once.
@@ -49,10 +47,8 @@ def run(tomcom, folder, minutes, gap_s):
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("tomcom")
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("--minutes", type=int, default=120)
-    parser.add_argument("--gap", type=float, default=1.0, help="seconds between signals")
-    arguments = parser.parse_args()
+    asked = parser(__doc__)
+    asked.add_argument("--minutes", type=int, default=120)
+    asked.add_argument("--gap", type=float, default=1.0, help="seconds between signals")
+    arguments = asked.parse_args()
     run(arguments.tomcom, arguments.folder / f"endurance-{os.getpid()}", arguments.minutes, arguments.gap)

@@ -2,7 +2,6 @@
 
 import json
 import math
-import os
 import random
 import re
 import socket
@@ -12,7 +11,7 @@ import time
 import tomllib
 from pathlib import Path
 
-from console import Console as Terminal
+from console import Console, Tmux, recorded, verify
 
 PAGE = Path("docs/tracker-json.md").read_text()
 PORT = tomllib.loads(Path("sessions/default.toml").read_text())["participant"]["gaze_port"]
@@ -32,65 +31,21 @@ MALFORMED = [
 ]
 
 
-class Console:
-    """A live session in a terminal of its own."""
-
-    def __init__(self, tomcom, out, *arguments):
-        self.out = Path(out)
-        self.server = f"tomcom-outside-{os.getpid()}"
-        command = [tomcom, *arguments, "--participant", "keyboard", "--gaze", "json", "--out", str(out)]
-        self.tmux("-f", "/dev/null", "new-session", "-d", "-x", "120", "-y", "40", *command)
-        self.wait_for("READY")
-
-    def tmux(self, *arguments):
-        done = subprocess.run(["tmux", "-L", self.server, *arguments], capture_output=True, text=True)
-        return done.stdout
-
-    def screen(self):
-        return self.tmux("capture-pane", "-p")
-
-    def wait_for(self, text, seconds=20):
-        until = time.monotonic() + seconds
-        while not re.search(text, self.screen()):
-            assert time.monotonic() < until, f"{text} did not appear:\n{self.screen()}"
-            time.sleep(0.05)
-
-    def keys(self, *keys):
-        for key in keys:
-            self.tmux("send-keys", key)
-            time.sleep(0.1)
-
-    def quit(self):
-        """Quits and gives back the recording's folder."""
-        self.keys("C-c", "y")
-        until = time.monotonic() + 20
-        while self.screen():
-            assert time.monotonic() < until, f"the console does not end:\n{self.screen()}"
-            time.sleep(0.05)
-        (recording,) = self.out.iterdir()
-        return recording
-
-    def checks(self, text):
-        """Waits for this in the list of checks before the trial."""
-        self.keys(".")
-        self.wait_for(text)
-        self.keys("Escape")
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.tmux("kill-server")
+def session(tomcom, out, *arguments):
+    return Tmux(tomcom, out, *arguments, "--participant", "keyboard", "--gaze", "json")
 
 
-def recorded(recording):
-    lines = (recording / "events.jsonl").read_text().splitlines()[1:]
-    return [json.loads(line) for line in lines]
+def keys(console, *keys):
+    for key in keys:
+        console.key(key)
+        time.sleep(0.1)
 
 
-def verify(tomcom, recording):
-    done = subprocess.run([tomcom, "replay", recording, "--verify", "--format", "json"], capture_output=True, text=True)
-    assert done.returncode == 0 and json.loads(done.stdout)["verified"] is True, done
+def checks(console, text):
+    """Waits for this in the list of checks before the trial."""
+    keys(console, ".")
+    console.wait_for(text)
+    keys(console, "Escape")
 
 
 def connect():
@@ -119,9 +74,9 @@ def send_among_nonsense(console):
             tracker.sendall(line[cut:])
             if part == 1 and index == 100:
                 # So much nonsense is told before the trial; it is started all the same.
-                console.keys(".")
+                keys(console, ".")
                 console.wait_for("gaze stream .* malformed")
-                console.keys("o", "Tab", "y", "x", "c")
+                keys(console, "o", "Tab", "y", "x", "c")
         # A tracker that goes in the middle of a line; the next one begins when all of it was read.
         tracker.sendall(b'{"x": 0.5, "y"')
         tracker.close()
@@ -130,7 +85,7 @@ def send_among_nonsense(console):
 
 
 def check_sender(tomcom, scratch):
-    with Console(tomcom, scratch / "sender", "operate", "sessions/default.toml") as console:
+    with session(tomcom, scratch / "sender", "operate", "sessions/default.toml") as console:
         sent = send_among_nonsense(console)
         recording = console.quit()
     events = recorded(recording)
@@ -152,14 +107,14 @@ def check_documented_sender(tomcom, scratch):
     assert len(senders) == 1, "one sender on the page, with the default port"
     lines = [line for line in senders[0].splitlines() if line.strip()]
     assert len(lines) <= 10, f"the ten-line sender has {len(lines)} lines"
-    with Console(tomcom, scratch / "documented") as console:
+    with session(tomcom, scratch / "documented") as console:
         sender = subprocess.Popen([sys.executable, "-c", senders[0]])
         time.sleep(3)
         assert sender.poll() is None, "the documented sender ended"
         sender.kill()
         sender.wait()
         recording = console.quit()
-    gaze = [event for event in recorded(recording) if event["kind"] == "gaze"]
+    gaze = recorded(recording, "gaze")
     seconds = (gaze[-1]["t_ns"] - gaze[0]["t_ns"]) / 1e9
     assert len(gaze) > 60 and seconds > 1, f"{len(gaze)} samples in {seconds} s"
     for sample in gaze:
@@ -171,7 +126,7 @@ def check_documented_sender(tomcom, scratch):
 
 def check_set_clock(tomcom, scratch):
     """A tracker whose clock began before zero, is set back by 0.7 s, and that sends one stamp 0.8 s ahead, and one that is no time."""
-    with Console(tomcom, scratch / "clock") as console:
+    with session(tomcom, scratch / "clock") as console:
         tracker = connect()
         begun = time.monotonic()
         for index in range(600):
@@ -237,11 +192,11 @@ def check_clocks(tomcom, scratch):
     }
     said = []
     for name, (t, hz, words) in cases.items():
-        with Console(tomcom, scratch / name.replace(" ", "-")) as console:
+        with session(tomcom, scratch / name.replace(" ", "-")) as console:
             with connect() as tracker:
                 after_s = send_by_schedule(tracker, t, hz, 12, 0.06, lambda: re.search(words, console.screen()))
                 assert after_s is not None and after_s < 6, (name, after_s, console.screen())
-                console.checks("gaze times")
+                checks(console, "gaze times")
             recording = console.quit()
         events = recorded(recording)
         stamps = [event for event in events if event["kind"] == "tracker" and event["what"] == "stamps"]
@@ -253,7 +208,7 @@ def check_clocks(tomcom, scratch):
         assert late < hz and max(lags(events, stamps[0]["t_ns"] + 1)[: int(5 * hz)]) == 0, (name, late)
         verify(tomcom, recording)
         said.append(f"{name} after {told_s:.1f} s ({late} late of {len(gaze)})")
-    with Console(tomcom, scratch / "drift") as console:
+    with session(tomcom, scratch / "drift") as console:
         with connect() as tracker:
             send_by_schedule(tracker, lambda s, n: 1.0002 * s, 120, 12, 0.06)
         recording = console.quit()
@@ -267,7 +222,7 @@ def check_standing_still(tomcom, scratch):
     for name, t in (("without-t", None), ("with-t", lambda s, n: s)):
         # tmux does not let its programs stand still.
         arguments = ["--participant", "keyboard", "--gaze", "json", "--out", scratch / name]
-        with Terminal(tomcom, arguments) as console:
+        with Console(tomcom, arguments) as console:
             console.wait_for("READY")
             stop, go = (f"os.kill({console.process.pid}, signal.{name})" for name in ("SIGSTOP", "SIGCONT"))
             stopper = subprocess.Popen([sys.executable, "-c", f"import os, signal, time; time.sleep(3); {stop}; time.sleep(6); {go}"])
@@ -289,7 +244,7 @@ def check_standing_still(tomcom, scratch):
 
 def check_held_places(tomcom, scratch):
     """40 connections that send a sample and then spaces keep no tracker out."""
-    with Console(tomcom, scratch / "places") as console:
+    with session(tomcom, scratch / "places") as console:
         holders = [connect() for _ in range(40)]
         for holder in holders:
             holder.sendall(b'{"x": 0.9, "y": 0.9, "confidence": 1}\n')
@@ -305,14 +260,14 @@ def check_held_places(tomcom, scratch):
             trackers.append(connect())
             send_by_schedule(trackers[-1], None, 120, 0.5, 0.0)
         recording = console.quit()
-    fresh = [event for event in recorded(recording) if event["kind"] == "gaze" and event["x"] < 0.85]
+    fresh = [event for event in recorded(recording, "gaze") if event["x"] < 0.85]
     assert len(fresh) == 8 * 60, len(fresh)
     print(f"places: of 40 connections that send spaces, 8 gave way to trackers after 6 s; {len(fresh)} of their samples recorded", flush=True)
 
 
 def check_many_ports(tomcom, scratch):
     """Datagrams from 50 ports with odd times do not move a tracker's clock."""
-    with Console(tomcom, scratch / "ports") as console, connect() as tracker:
+    with session(tomcom, scratch / "ports") as console, connect() as tracker:
         noise = (
             "import random, socket, time\n"
             "sockets = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(50)]\n"
@@ -323,7 +278,7 @@ def check_many_ports(tomcom, scratch):
         other.kill()
         other.wait()
         recording = console.quit()
-    own = [event for event in recorded(recording) if event["kind"] == "gaze" and event["x"] < 0.9]
+    own = [event for event in recorded(recording, "gaze") if event["x"] < 0.9]
     worst = max((event["t_ns"] - event["taken_ns"]) / 1e9 for event in own)
     assert len(own) == 1200 and worst < 0.25, (len(own), worst)
     print(f"odd times from 50 ports: the tracker's {len(own)} samples count as at most {1000 * worst:.0f} ms old", flush=True)
@@ -340,7 +295,7 @@ def check_rejected(tomcom, scratch):
         ("repr", [b"{'x': 0.5}\n"], "begin with .{'x': 0.5}"),
     ]
     for name, pieces, words in cases:
-        with Console(tomcom, scratch / name) as console:
+        with session(tomcom, scratch / name) as console:
             with connect() as sender:
                 try:
                     for piece in pieces:
@@ -348,16 +303,16 @@ def check_rejected(tomcom, scratch):
                         time.sleep(0.05)
                 except OSError:
                     pass
-            console.checks(words)
+            checks(console, words)
             console.wait_for("1 sender rejected")
-            console.keys("3")  # a session in which nothing happened leaves no recording
+            keys(console, "3")  # a session in which nothing happened leaves no recording
             console.quit()
-    with Console(tomcom, scratch / "datagrams") as console:
+    with session(tomcom, scratch / "datagrams") as console:
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
             for _ in range(61):
                 sender.sendto(("\ufeff" + line).encode(), ("127.0.0.1", PORT))
                 time.sleep(0.02)
-        console.checks("byte order mark")
+        checks(console, "byte order mark")
         console.wait_for("1 sender rejected")
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
             sender.sendto("\n".join(json.dumps({"x": n / 880, "y": 0.5, "confidence": 1}) for n in range(880)).encode(), ("127.0.0.1", PORT))
@@ -365,7 +320,7 @@ def check_rejected(tomcom, scratch):
         found = re.findall(r"(\d+) Hz", console.screen())
         assert all(int(hz) <= 1000 for hz in found), found
         recording = console.quit()
-    assert sum(event["kind"] == "gaze" for event in recorded(recording)) == 880
+    assert len(recorded(recording, "gaze")) == 880
     print("rejected senders: a byte order mark, UTF-16, no line break, a long line and Python's dictionary are told; 61 datagrams are one sender; 880 samples at once", flush=True)
 
 

@@ -4,15 +4,13 @@ its words on the screen, while gaze comes in at full rate. And what an idle cons
     tests/outside/latency.py TOMCOM FOLDER [--signals 1000] [--gap 0.6] [--rates 0 120 1000]
 """
 
-import argparse
 import os
 import random
 import subprocess
 import sys
 import time
-from pathlib import Path
 
-from console import Console, Log, percentile, session_file
+from console import Console, Log, parser, percentile, session_file
 
 # Below the ports that a system gives to connections by itself: those may be taken.
 PORT = 20123
@@ -118,13 +116,11 @@ def idle(tomcom, folder, seconds):
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("tomcom")
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("--signals", type=int, default=1000)
-    parser.add_argument("--gap", type=float, default=0.6, help="seconds between signals")
-    parser.add_argument("--rates", type=int, nargs="*", default=[0, 120, 1000], help="of the gaze in Hz; 0: simulated")
-    arguments = parser.parse_args()
+    asked = parser(__doc__)
+    asked.add_argument("--signals", type=int, default=1000)
+    asked.add_argument("--gap", type=float, default=0.6, help="seconds between signals")
+    asked.add_argument("--rates", type=int, nargs="*", default=[0, 120, 1000], help="of the gaze in Hz; 0: simulated")
+    arguments = asked.parse_args()
     idle(arguments.tomcom, arguments.folder / f"idle-{os.getpid()}", 10)
     for rate in arguments.rates:
         folder = arguments.folder / f"gaze-{rate}-{os.getpid()}"

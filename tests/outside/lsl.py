@@ -4,7 +4,6 @@ them into XDF in a process of its own, and pyxdf reads that file.
     lsl.py TOMCOM FOLDER [--seconds 60] [--hz 200]
 """
 
-import argparse
 import atexit
 import json
 import math
@@ -20,7 +19,7 @@ import numpy
 import pylsl.lib
 import pyxdf
 
-from console import Console, Log
+from console import Console, Log, parser, recorded, verify
 from latency import SIGNALS, send
 
 LIBRARY = pylsl.lib.libpath
@@ -115,12 +114,6 @@ class Recorder:
     def stop(self):
         self.process.communicate(b"\n", timeout=60)
         assert self.process.returncode == 0, self.told.read_text()
-
-
-def events_of(recording):
-    with open(recording / "events.jsonl", encoding="utf-8") as log:
-        _, *events = map(json.loads, log)
-    return events
 
 
 def streams_of(file):
@@ -278,7 +271,7 @@ def check_both_ways(tomcom, folder, seconds, hz):
 def check_recorded(tomcom, folder, recording, journal, title):
     """What a session and its recorder left behind."""
     verify(tomcom, recording)
-    events, streams = events_of(recording), streams_of(folder / "session.xdf")
+    events, streams = recorded(recording), streams_of(folder / "session.xdf")
     assert set(streams) == {*OUTLETS, "tracker"}, set(streams)
     check_metadata(streams)
     first, offset_s, spread_s, told = check_events(streams, events)
@@ -303,11 +296,6 @@ def check_example(file, recording, streams):
     assert f"errors_human: {sum(sample[3] == 'yes' for sample in human)}\n" in done.stdout and "gaze_before_press" in done.stdout, done.stdout
 
 
-def verify(tomcom, recording):
-    done = subprocess.run([tomcom, "replay", recording, "--verify", "--format", "json"], capture_output=True, text=True)
-    assert done.returncode == 0 and json.loads(done.stdout)["verified"] is True, done
-
-
 def check_tracker_comes_and_goes(tomcom, folder):
     """A tracker that is killed and comes back, and one without the channel that the session names."""
     console, recording = begin(tomcom, folder)
@@ -327,7 +315,7 @@ def check_tracker_comes_and_goes(tomcom, folder):
         time.sleep(2)
         console.quit()
         sender.kill()
-    what = [event["what"] for event in events_of(recording) if event["kind"] == "tracker" and event["what"] in ("connected", "lost")]
+    what = [event["what"] for event in recorded(recording, "tracker") if event["what"] in ("connected", "lost")]
     assert what == ["connected", "lost", "connected"], what
     verify(tomcom, recording)
     sender, _ = tracker(folder)
@@ -359,7 +347,7 @@ def check_two_of_one_name(tomcom, folder):
         assert done.returncode == 1 and "2 LSL streams" in told and 'source_id "tracker-1"' in told and 'source_id "tracker-2"' in told, told
         console.key("3")  # a session in which nothing happened leaves no recording
         console.quit()
-    events = events_of(recording)
+    events = recorded(recording)
     (several,) = [event["streams"] for event in events if event["kind"] == "tracker" and event["what"] == "several_streams"]
     assert len(several) == 2 and not any(event["kind"] == "gaze" for event in events), several
     host = re.search(r" on (\S+), source_id", several[0])[1]
@@ -369,7 +357,7 @@ def check_two_of_one_name(tomcom, folder):
             console.wait_for(r"gaze \d+ Hz")
             time.sleep(1)
             console.quit()
-        events = events_of(recording)
+        events = recorded(recording)
         late = [event for event in events if event["kind"] == "gaze" and event["t_ns"] - event["taken_ns"] > 0.5e9]
         assert not late and not any(event.get("what") == "several_streams" for event in events), len(late)
     # The second one comes when the first one is read: that is told, and the first one is read on.
@@ -398,7 +386,7 @@ def check_stamps(tomcom, folder):
         time.sleep(10)
         console.quit()
     sender.kill()
-    events = events_of(recording)
+    events = recorded(recording)
     gaze = [event for event in events if event["kind"] == "gaze"]
     told = [event for event in events if event["kind"] == "tracker" and event["what"] == "stamps"]
     late = [event for event in gaze if event["t_ns"] - event["taken_ns"] > 0.5e9]
@@ -441,12 +429,10 @@ def check_no_library(tomcom, folder):
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("tomcom")
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("--seconds", type=int, default=60)
-    parser.add_argument("--hz", type=int, default=200)
-    arguments = parser.parse_args()
+    options = parser(__doc__)
+    options.add_argument("--seconds", type=int, default=60)
+    options.add_argument("--hz", type=int, default=200)
+    arguments = options.parse_args()
     program, scratch = str(Path(arguments.tomcom).resolve()), arguments.folder.resolve() / str(os.getpid())
     check_no_library(program, scratch / "none")
     check_tracker_comes_and_goes(program, scratch / "comes")

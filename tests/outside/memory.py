@@ -4,15 +4,13 @@ reads and one that is stopped (SIGSTOP).
     tests/outside/memory.py TOMCOM FOLDER [--minutes 20] [--hz 120] [--most 200] [--growth 6]
 """
 
-import argparse
 import os
 import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
-from console import Console, session_file
+from console import Console, parser, session_file
 from latency import SENDER
 from stream import RERUN, rows_of, run
 
@@ -60,14 +58,12 @@ def measure(arguments, folder):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("tomcom")
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("--minutes", type=float, default=20)
-    parser.add_argument("--hz", type=int, default=120, help="gaze samples a second")
-    parser.add_argument("--most", type=float, default=200, help="MB that may be resident")
-    parser.add_argument("--growth", type=float, default=6, help="MB a minute that it may grow by in the second half of 10 minutes or more")
-    arguments = parser.parse_args()
+    asked = parser(__doc__)
+    asked.add_argument("--minutes", type=float, default=20)
+    asked.add_argument("--hz", type=int, default=120, help="gaze samples a second")
+    asked.add_argument("--most", type=float, default=200, help="MB that may be resident")
+    asked.add_argument("--growth", type=float, default=6, help="MB a minute that it may grow by in the second half of 10 minutes or more")
+    arguments = asked.parse_args()
     run(RERUN, "analytics", "disable")
     folder = arguments.folder / f"memory-{os.getpid()}"
     recording, resident, minutes = measure(arguments, folder)

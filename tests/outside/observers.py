@@ -5,18 +5,14 @@ and one who reads nothing.
 """
 
 import json
-import os
-import re
 import socket
-import subprocess
 import sys
 import time
 from contextlib import ExitStack
 from pathlib import Path
 
-from console import percentile
+from console import Tmux, percentile, recorded, verify
 from page import browser
-from simulated import run
 from websockets.sync.client import connect
 
 PORT = 20371
@@ -31,49 +27,6 @@ window.seen = [];
 const note = () => {{ const text = {TEXT}; if (!seen.length || seen[seen.length - 1].text !== text) seen.push({{ text, at: Date.now() }}); }};
 addEventListener("DOMContentLoaded", () => new MutationObserver(note).observe(document.getElementById("screen"), {{ childList: true, subtree: true }}));
 """
-
-
-class Tmux:
-    """A live session in a terminal of its own."""
-
-    def __init__(self, tomcom, folder, *arguments):
-        self.server = f"tomcom-observers-{os.getpid()}"
-        self.out = folder / "recordings"
-        command = [tomcom, "operate", "sessions/default.toml", *arguments, "--out", self.out]
-        self.tmux("-f", "/dev/null", "new-session", "-d", "-x", "120", "-y", "40", *map(str, command))
-        self.wait_for("READY")
-
-    def tmux(self, *arguments):
-        return subprocess.run(["tmux", "-L", self.server, *arguments], capture_output=True, text=True).stdout
-
-    def screen(self):
-        return "\n".join(line.rstrip() for line in self.tmux("capture-pane", "-p").split("\n")).rstrip()
-
-    def key(self, key):
-        self.tmux("send-keys", key)
-
-    def wait_for(self, pattern, seconds=60):
-        until = time.monotonic() + seconds
-        while not re.search(pattern, self.screen()):
-            assert time.monotonic() < until, f"{pattern} did not appear:\n{self.screen()}"
-            time.sleep(0.02)
-
-    def quit(self):
-        self.key("C-c")
-        self.wait_for("Quit tomcom")
-        self.key("y")
-        until = time.monotonic() + 30
-        while self.screen():
-            assert time.monotonic() < until, "the console does not end"
-            time.sleep(0.05)
-        (recording,) = self.out.iterdir()
-        return recording
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.tmux("kill-server")
 
 
 def open_page(chromium, observer):
@@ -140,8 +93,7 @@ def remarks(tmux, page):
     page.wait_for_function("document.getElementById('told').textContent.includes('Saved as a note of O1')")
     assert page.input_value("#note") == ""
     (recording,) = tmux.out.iterdir()
-    events = [json.loads(line) for line in (recording / "events.jsonl").read_text().splitlines()[1:]]
-    notes = [(event["note"], event["observer"]) for event in events if event["kind"] == "marker"]
+    notes = [(event["note"], event["observer"]) for event in recorded(recording, "marker")]
     assert notes == [("looks at the pot", "O1")], notes
 
 
@@ -216,7 +168,8 @@ def nobody_is_waited_for(tmux, page):
 if __name__ == "__main__":
     tomcom, folder = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
     folder.mkdir(parents=True, exist_ok=True)
-    with Tmux(tomcom, folder, f"--observe=127.0.0.1:{PORT}", "--condition", "wizard") as tmux, browser() as chromium:
+    command = ["operate", "sessions/default.toml", f"--observe=127.0.0.1:{PORT}", "--condition", "wizard"]
+    with Tmux(tomcom, folder / "recordings", *command) as tmux, browser() as chromium:
         is_asked_for_a_code(chromium)
         page = open_page(chromium, "O1")
         equals_the_terminal(tmux, page)
@@ -227,4 +180,4 @@ if __name__ == "__main__":
         assert not page.errors, page.errors
         recording = tmux.quit()
         page.wait_for_function("document.getElementById('told').textContent !== ''")
-    run(tomcom, "replay", recording, "--verify")
+    verify(tomcom, recording)

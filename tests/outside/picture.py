@@ -3,13 +3,12 @@
     tests/outside/picture.py TOMCOM FOLDER [--seconds 75] [--size 120x40] [--out tests/snapshots/console.svg]
 """
 
-import argparse
 import os
 import time
 from html import escape
 from pathlib import Path
 
-from console import Console
+from console import Console, parser
 
 COLUMN, ROW, MARGIN = 8.4, 18, 12
 TEXT, GROUND = "#d8d8d8", "#1e1e1e"
@@ -61,13 +60,11 @@ def svg(screen):
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("tomcom")
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("--seconds", type=float, default=75)
-    parser.add_argument("--size", default="120x40")
-    parser.add_argument("--out", type=Path, default=Path("tests/snapshots/console.svg"))
-    arguments = parser.parse_args()
+    asked = parser(__doc__)
+    asked.add_argument("--seconds", type=float, default=75)
+    asked.add_argument("--size", default="120x40")
+    asked.add_argument("--out", type=Path, default=Path("tests/snapshots/console.svg"))
+    arguments = asked.parse_args()
     size = tuple(int(number) for number in arguments.size.split("x"))
     recordings = arguments.folder / f"picture-{os.getpid()}"
     with Console(arguments.tomcom, ["sessions/default.toml", "--code", "P01", "--out", recordings], size) as console:

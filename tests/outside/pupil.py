@@ -3,7 +3,6 @@
     tests/outside/pupil.py TOMCOM FOLDER [--seconds 20] [--fast-seconds 20]
 """
 
-import argparse
 import atexit
 import json
 import subprocess
@@ -13,7 +12,7 @@ import time
 import tomllib
 from pathlib import Path
 
-from console import Console, percentile
+from console import Console, parser, percentile, recorded, verify
 
 HERE = Path(__file__).parent
 PORT = 20620
@@ -36,13 +35,13 @@ def kitchen(tomcom, name="sushi"):
     return surface, places
 
 
-def session(folder, port, presses, name="sushi", gaze="pupil"):
+def session(folder, port, name="sushi", gaze="pupil", more=""):
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / "session.toml"
     layout = Path(f"layouts/{name}.toml").resolve()
     path.write_text(
-        f'layout = "{layout}"\n[trial]\npresses = {presses}\nseconds = 86400.0\n'
-        f'[participant]\ngaze = "{gaze}"\n[tracker]\nport = {port}\n'
+        f'layout = "{layout}"\n[trial]\npresses = 4000\nseconds = 86400.0\n'
+        f'[participant]\ngaze = "{gaze}"\n[tracker]\nport = {port}\n{more}'
     )
     return path
 
@@ -76,17 +75,6 @@ class StandIn:
     def kill(self):
         self.process.kill()
         self.process.wait()
-
-
-def recorded(recording, kind=None):
-    lines = (recording / "events.jsonl").read_text().splitlines()[1:]
-    events = [json.loads(line) for line in lines]
-    return [event for event in events if kind is None or event["kind"] == kind]
-
-
-def verify(tomcom, recording):
-    done = subprocess.run([tomcom, "replay", recording, "--verify", "--format", "json"], capture_output=True, text=True)
-    assert done.returncode == 0 and json.loads(done.stdout)["verified"] is True, done
 
 
 def timing(tomcom, recording):
@@ -124,7 +112,7 @@ def check_session(tomcom, folder, seconds, name):
     """A whole session at 30 frames a second with 8 samples each."""
     surface, places = kitchen(tomcom, name)
     stand_in = StandIn(folder, PORT, surface, places, "--seconds", seconds)
-    path = session(folder, PORT, 4000, name)
+    path = session(folder, PORT, name)
     with Console(tomcom, [path, "--out", folder / "recordings"]) as console:
         stand_in.wait_for("began")
         console.wait_for(r"gaze +2\d\d Hz")
@@ -163,7 +151,7 @@ def check_restarts(tomcom, folder, times=10):
     """Capture is killed and started again ten times in one trial, and sends wild things besides."""
     surface, places = kitchen(tomcom)
     port = PORT + 1
-    path = session(folder, port, 4000)
+    path = session(folder, port)
     stand_ins = []
     with Console(tomcom, [path, "--out", folder / "recordings"]) as console:
         for round_ in range(times + 1):
@@ -213,7 +201,7 @@ def check_fast(tomcom, folder, seconds):
         here = folder / source
         port = PORT + 2
         stand_in = StandIn(here, port, surface, places, "--fps", fps, "--samples", 10, "--seconds", seconds) if fps else None
-        path = session(here, port, 4000, gaze=source)
+        path = session(here, port, gaze=source)
         with Console(tomcom, [path, "--out", here / "recordings"]) as console:
             console.wait_for("READY")
             if stand_in:
@@ -255,13 +243,11 @@ def check_fast(tomcom, folder, seconds):
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("tomcom")
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("--seconds", type=float, default=20, help="of a session at 30 frames a second")
-    parser.add_argument("--fast-seconds", type=float, default=20, help="of one at 1,000 samples a second")
-    parser.add_argument("--only", choices=["session", "restarts", "fast"])
-    options = parser.parse_args()
+    asked = parser(__doc__)
+    asked.add_argument("--seconds", type=float, default=20, help="of a session at 30 frames a second")
+    asked.add_argument("--fast-seconds", type=float, default=20, help="of one at 1,000 samples a second")
+    asked.add_argument("--only", choices=["session", "restarts", "fast"])
+    options = asked.parse_args()
     if options.only in (None, "session"):
         check_session(options.tomcom, options.folder / "session", options.seconds, "sushi")
         check_session(options.tomcom, options.folder / "burger", options.seconds / 2, "burger")

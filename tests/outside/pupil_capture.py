@@ -5,19 +5,19 @@
 PUPIL is a clone of github.com/pupil-labs/pupil.
 """
 
-import argparse
 import atexit
 import json
 import subprocess
 import sys
 import time
+from contextlib import contextmanager
 from pathlib import Path
 
 import msgpack
 import zmq
 
-from console import Console, percentile
-from pupil import recorded, start_trial, verify
+from console import Console, parser, percentile, recorded, verify
+from pupil import session, start_trial
 
 HERE = Path(__file__).parent
 PORT = 20630
@@ -69,15 +69,21 @@ class Modules:
         return {name: [one["label"] for one in found] for name, found in self.annotations().items()}
 
 
-def session(folder, port, surface="Surface 1", more=""):
-    folder.mkdir(parents=True, exist_ok=True)
-    path = folder / "session.toml"
-    layout = Path("layouts/sushi.toml").resolve()
-    path.write_text(
-        f'layout = "{layout}"\n[trial]\npresses = 4000\nseconds = 86400.0\n[participant]\ngaze = "pupil"\n'
-        f'[tracker]\nport = {port}\nsurface = "{surface}"\n{more}'
-    )
-    return path
+@contextmanager
+def operate(tomcom, folder, port, surface="Surface 1", more=""):
+    """A session at the console."""
+    path = session(folder, port, more=f'surface = "{surface}"\n{more}')
+    with Console(tomcom, [path, "--out", folder / "recordings"]) as console:
+        yield console
+
+
+@contextmanager
+def trial(tomcom, folder, port, more=""):
+    """A session whose trial runs."""
+    with operate(tomcom, folder, port, more=more) as console:
+        console.wait_for(r"gaze +\d\d+ Hz")
+        start_trial(console)
+        yield console
 
 
 def trackers(recording, what):
@@ -87,11 +93,8 @@ def trackers(recording, what):
 def check_trials(tomcom, folder, pupil, trials):
     """Each trial is in a recording of Capture's, from its start to its end."""
     capture = Modules(pupil, folder / "capture", PORT)
-    path = session(folder, PORT)
-    for number in range(trials):
-        with Console(tomcom, [path, "--out", folder / "recordings"]) as console:
-            console.wait_for(r"gaze +\d\d+ Hz")
-            start_trial(console)
+    for _ in range(trials):
+        with trial(tomcom, folder, PORT) as console:
             time.sleep(1.0)
             console.end()
             console.quit()
@@ -113,9 +116,7 @@ def check_trials(tomcom, folder, pupil, trials):
 def check_restart(tomcom, folder, pupil):
     """Capture is killed in a trial; its next recording says that the trial runs."""
     capture = Modules(pupil, folder / "capture", PORT + 1)
-    with Console(tomcom, [session(folder, PORT + 1), "--out", folder / "recordings"]) as console:
-        console.wait_for(r"gaze +\d\d+ Hz")
-        start_trial(console)
+    with trial(tomcom, folder, PORT + 1) as console:
         time.sleep(1)
         capture.kill()
         console.wait_for("NO TRACKER")
@@ -135,9 +136,7 @@ def check_lab(tomcom, folder, pupil):
     """A recording that the lab began is annotated, and runs on after the trial; with `record = false`, too."""
     capture = Modules(pupil, folder / "capture", PORT + 2, "--lab-records")
     for more in ("record = true\n", "record = false\n"):
-        with Console(tomcom, [session(folder, PORT + 2, more=more), "--out", folder / "recordings"]) as console:
-            console.wait_for(r"gaze +\d\d+ Hz")
-            start_trial(console)
+        with trial(tomcom, folder, PORT + 2, more=more) as console:
             if "true" in more:
                 console.wait_for("started no recording", 10)
             time.sleep(0.5)
@@ -156,9 +155,7 @@ def check_lab(tomcom, folder, pupil):
 def check_kill(tomcom, folder, pupil):
     """The program is killed in a trial that Capture records: the continued trial goes on in that recording, and ends it."""
     capture = Modules(pupil, folder / "capture", PORT + 7)
-    with Console(tomcom, [session(folder, PORT + 7), "--out", folder / "recordings"]) as console:
-        console.wait_for(r"gaze +\d\d+ Hz")
-        start_trial(console)
+    with trial(tomcom, folder, PORT + 7) as console:
         time.sleep(1.5)
         console.process.kill()
         console.process.wait()
@@ -174,9 +171,7 @@ def check_kill(tomcom, folder, pupil):
     # A trial that is continued is paused at first.
     assert labels == [["trial started", "trial paused", "trial ended"]], labels
     # Killed again, and Capture's recording is ended by hand meanwhile: the continued trial has a new one.
-    with Console(tomcom, [session(folder / "again", PORT + 7), "--out", folder / "again" / "recordings"]) as console:
-        console.wait_for(r"gaze +\d\d+ Hz")
-        start_trial(console)
+    with trial(tomcom, folder / "again", PORT + 7) as console:
         time.sleep(1.5)
         console.process.kill()
         console.process.wait()
@@ -201,9 +196,7 @@ def check_kill(tomcom, folder, pupil):
 def check_leave(tomcom, folder, pupil):
     """Whoever leaves in the trial ends it, also in Capture's recording."""
     capture = Modules(pupil, folder / "capture", PORT + 8)
-    with Console(tomcom, [session(folder, PORT + 8), "--out", folder / "recordings"]) as console:
-        console.wait_for(r"gaze +\d\d+ Hz")
-        start_trial(console)
+    with trial(tomcom, folder, PORT + 8) as console:
         time.sleep(1.5)
         console.quit()
     time.sleep(1)
@@ -232,9 +225,7 @@ def check_clock(tomcom, folder, pupil):
             answers.append((time.monotonic() - asked, found - (asked + time.monotonic()) / 2))
         return min(answers)[1]
 
-    with Console(tomcom, [session(folder, PORT + 3), "--out", folder / "recordings"]) as console:
-        console.wait_for(r"gaze +\d\d+ Hz")
-        start_trial(console)
+    with trial(tomcom, folder, PORT + 3) as console:
         time.sleep(4)
         offsets = [offset()]
         for by, word in ((0.2, "ahead"), (-0.2, "back")):
@@ -272,7 +263,7 @@ def check_clock(tomcom, folder, pupil):
 def check_time_sync(tomcom, folder, pupil):
     """Capture's plugin Time Sync follows another clock: it sets Capture's once, and slews it twice in the trial."""
     capture = Modules(pupil, folder / "capture", PORT + 6, "--time-sync")
-    with Console(tomcom, [session(folder, PORT + 6), "--out", folder / "recordings"]) as console:
+    with operate(tomcom, folder, PORT + 6) as console:
         console.wait_for(r"gaze +\d\d+ Hz")
         console.wait_for("clock was set ahead by 0[.]05")
         start_trial(console)
@@ -308,7 +299,7 @@ def check_time_sync(tomcom, folder, pupil):
 def check_eyes(tomcom, folder, pupil):
     """Fixations and blinks of Capture's online detectors are what the eyes did."""
     capture = Modules(pupil, folder / "capture", PORT + 4)
-    with Console(tomcom, [session(folder, PORT + 4), "--out", folder / "recordings"]) as console:
+    with operate(tomcom, folder, PORT + 4) as console:
         console.wait_for(r"gaze +\d\d+ Hz")
         # Sixteen blinks, one in 1.6 s, the first one after 9.6 s.
         time.sleep(38)
@@ -330,7 +321,7 @@ def check_eyes(tomcom, folder, pupil):
 def check_surface(tomcom, folder, pupil):
     """Another surface than the session's is seen: its name is told."""
     capture = Modules(pupil, folder / "capture", PORT + 5)
-    with Console(tomcom, [session(folder, PORT + 5, surface="wall"), "--out", folder / "recordings"]) as console:
+    with operate(tomcom, folder, PORT + 5, surface="wall") as console:
         console.wait_for("NO DISPLAY TAGS")
         console.wait_for('other surfaces: "Surface 1"')
         console.key(".")
@@ -342,13 +333,11 @@ def check_surface(tomcom, folder, pupil):
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("tomcom")
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("pupil")
-    parser.add_argument("--trials", type=int, default=20)
-    parser.add_argument("--only", choices=["trials", "restart", "lab", "kill", "leave", "clock", "time-sync", "eyes", "surface"])
-    options = parser.parse_args()
+    asked = parser(__doc__)
+    asked.add_argument("pupil")
+    asked.add_argument("--trials", type=int, default=20)
+    asked.add_argument("--only", choices=["trials", "restart", "lab", "kill", "leave", "clock", "time-sync", "eyes", "surface"])
+    options = asked.parse_args()
     checks = {"restart": check_restart, "lab": check_lab, "kill": check_kill, "leave": check_leave, "clock": check_clock, "time-sync": check_time_sync, "eyes": check_eyes, "surface": check_surface}
     if options.only in (None, "trials"):
         check_trials(options.tomcom, options.folder / "trials", options.pupil, options.trials)

@@ -98,6 +98,9 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         # Only who holds the button all the time agrees.
         item("consent")
         pictures("consent")
+        # Keys that do the same are shown.
+        sign = lambda made: page.ask(f"getComputedStyle(document.querySelector({json.dumps(made)}), '::after').content").split('"')[1]
+        assert (sign(".hold span"), sign(".declines")) == ("↵", page.ask("Stage.scene().words['key delete']"))
         page.page.hover(".hold")
         page.page.mouse.down()
         time.sleep(1.5)
@@ -127,6 +130,8 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         console.wait_for("I do not agree")
         page.page.reload()
         item("consent")
+        keyboard.press("Delete")
+        page.wait_for("document.querySelector('.declines').classList.contains('chosen')")
         assert not list((folder / "recordings").glob("*/")), "recorded without consent"
         keyboard.down("Enter")
         item("age")
@@ -214,6 +219,7 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         item("colour_vision")
         keyboard.press("0")
         item("cooking")
+        assert [sign(made) for made in (".turns .back", ".turns .skip")] == ["←", "0"]
         pictures("scale")
         # What cannot be chosen, and going on without an answer, is told.
         for key, said in (("9", "nothing"), ("Enter", "tutorial first question")):
@@ -276,6 +282,7 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         page.stage("questionnaire")
         # A slider by touch, and then by arrows and digits.
         item("mental")
+        assert [sign(made) for made in (".hint", ".turns .skip", ".turns .next")] == ["← →", page.ask("Stage.scene().words['key delete']"), "↵"]
         pictures("slider")
         box = page.page.locator(".slider").bounding_box()
         page.page.mouse.move(box["x"] + 0.2 * box["width"], box["y"] + box["height"] / 2)

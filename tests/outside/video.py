@@ -20,6 +20,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
+from console import recorded, verify
 from display import operate, session_file, url
 from page import Page, browser
 
@@ -122,7 +123,7 @@ def record(tomcom, chromium, folder):
         page.close()
         console.quit()
     (recording,) = (folder / "recordings").iterdir()
-    events = [json.loads(line) for line in (recording / "events.jsonl").read_text().splitlines()[1:]]
+    events = recorded(recording)
     drawn = [event for event in events if event["kind"] == "display" and event["what"] == "drawn"]
     cues = [event["seq"] for event in events if event["kind"] in ("trial_started", "signal_shown", "trial_ended")]
     assert [event["cue"] for event in drawn] == cues and len(cues) >= 5, (drawn, cues)
@@ -321,8 +322,7 @@ def main():
     assert found["by"] == "offset" and found["offset_s"] == -1.5 and found["file"] == "no-flash.mp4", found
     assert (recording / "no-flash.mp4").read_bytes() == dark.read_bytes()
     assert (recording / "events.jsonl").read_bytes() == log, "the log stays as it is"
-    verified = subprocess.run([tomcom, "replay", recording, "--verify"], capture_output=True, text=True)
-    assert verified.returncode == 0, verified.stderr
+    verify(tomcom, recording)
 
 
 if __name__ == "__main__":

@@ -4,15 +4,13 @@ as without one, and what was recorded whole.
     tests/outside/viewer.py TOMCOM FOLDER [--signals 25]
 """
 
-import argparse
 import random
 import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
-from console import Console, Log, percentile, session_file
+from console import Console, Log, parser, percentile, session_file, verify
 from latency import LIMIT_S, PORT, SENDER, send_many
 from stream import RERUN, compare, run
 
@@ -28,11 +26,9 @@ def measure(console, log, signals, how):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("tomcom")
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("--signals", type=int, default=25, help="in each state of the viewer")
-    arguments = parser.parse_args()
+    asked = parser(__doc__)
+    asked.add_argument("--signals", type=int, default=25, help="in each state of the viewer")
+    arguments = asked.parse_args()
     folder = arguments.folder
     run(RERUN, "analytics", "disable")
     session = session_file(folder, gaze="json", gaze_port=PORT + HZ)
@@ -63,7 +59,7 @@ def main():
                 viewer.kill()
                 viewer.wait()
         console.quit()
-    subprocess.run([arguments.tomcom, "replay", recording, "--verify"], check=True, stdout=subprocess.DEVNULL)
+    verify(arguments.tomcom, recording)
     run(RERUN, "rrd", "verify", recording / "recording.rrd")
     compare(recording / "recording.rrd", recording / "events.jsonl", least_presses=5)
 

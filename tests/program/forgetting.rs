@@ -164,6 +164,24 @@ fn rows_from_before_a_code_was_corrected_go_with_the_recording() {
     }
 }
 
+/// What names the code without being the participant's is no reason to fail.
+#[test]
+fn files_that_stay_and_name_the_code_are_told() {
+    let lab = RecordingsFolder::of_two_people("named");
+    let [recording, frozen, root] = ["seed1-P01-1", "paper.frozen", ""].map(|path| lab.at(path).display().to_string());
+    ended(lab.run(&["correct", &recording, "--code", "P88", "--reason", "typed wrong"]), 0, &[]);
+    ended(lab.run(&["plan", "sessions/paper.toml", "--out", &root, "--freeze", &frozen]), 0, &[]);
+    lab.put("plan.toml", "[plan]\nparticipants = [\"P01\", \"P02\"]\n");
+    let told = ended(lab.forget(&["P01", "--yes"]), 0, &["these stay, and name P01 ("]);
+    let of_recording = ["correction.toml", "events.jsonl", "session.toml"].map(|name| format!("seed1-P01-1/{name}"));
+    for path in ["paper.frozen", "plan.toml"].map(str::to_string).iter().chain(&of_recording) {
+        assert!(told.contains(&format!("  {}\n", lab.at(path).display())), "{path}: {told}");
+    }
+    assert!(!lab.at("seed1-P01-2").exists(), "{told}");
+    let above = lab.root.parent().and_then(Path::to_str).expect("UTF-8");
+    ended(lab.run(&["forget", "p88", "--in", above]), 1, &["no files of participant p88 in ", "did you mean P88?"]);
+}
+
 #[test]
 fn a_participant_is_forgotten_everywhere_and_nobody_else() {
     let lab = RecordingsFolder::of_two_people("everywhere");

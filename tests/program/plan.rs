@@ -62,7 +62,7 @@ fn simulated_participants_have_both_trials_of_the_plan() {
     assert!(told.contains(&format!("{words}{out_name} analyses them")), "{told}");
     let nowhere = format!("{out_name}/none-yet");
     let told = done(&["plan", "sessions/study.toml", "--out", &nowhere]);
-    assert!(told.contains(&format!("no recording of the plan is in {nowhere}; --out")), "{told}");
+    assert!(told.contains(&format!("no recording of the plan is in {nowhere}, which does not exist; --out")), "{told}");
     refused(&["simulate", "sessions/study.toml", "--trials", "29", "--out", out_name], "--trials 29");
 }
 
@@ -241,7 +241,8 @@ fn check_excluded_trial_is_repeated(terminal: &Terminal, session: &str, out: &st
     // Its recordings are of a simulated participant.
     terminal.run(&["operate", session, "--code", "A1", "--out", out, "--participant", "keyboard", "--gaze", "none"]);
     terminal.see("A1: ANOTHER KIND OF PARTICIPANT");
-    terminal.see("Found: person at the keyboard");
+    terminal.see("Now: person at the keyboard");
+    terminal.see("To go on as before, leave");
     choose(terminal, "2");
     terminal.is_whole(0);
     // It is asked for, and left alone.

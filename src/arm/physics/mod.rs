@@ -71,6 +71,7 @@ impl SerialArm {
 }
 
 /// The simulated world: arm, buttons and hand as bodies of the physics engine.
+#[derive(Clone)]
 pub struct PhysicsWorld {
     arm: SerialArm,
     parameters: IntegrationParameters,
@@ -82,7 +83,7 @@ pub struct PhysicsWorld {
     impulse_joints: ImpulseJointSet,
     multibodies: MultibodyJointSet,
     ccd: CCDSolver,
-    pipeline: PhysicsPipeline,
+    pipeline: WorkingMemory,
     /// Handles of the arm's revolute joints in the physics engine.
     joints: Vec<MultibodyJointHandle>,
     /// The rigid body of each link of the arm; parts that are fixed to a link belong to the link's body.
@@ -105,34 +106,13 @@ pub struct PhysicsWorld {
     correction: JointAngles,
 }
 
-impl Clone for PhysicsWorld {
-    fn clone(&self) -> PhysicsWorld {
-        PhysicsWorld {
-            arm: self.arm.clone(),
-            parameters: self.parameters,
-            islands: self.islands.clone(),
-            broad_phase: self.broad_phase.clone(),
-            narrow_phase: self.narrow_phase.clone(),
-            bodies: self.bodies.clone(),
-            colliders: self.colliders.clone(),
-            impulse_joints: self.impulse_joints.clone(),
-            multibodies: self.multibodies.clone(),
-            ccd: self.ccd.clone(),
-            // The physics engine's working memory has no state, so a copy of the world gets a new one.
-            pipeline: PhysicsPipeline::new(),
-            joints: self.joints.clone(),
-            links: self.links.clone(),
-            stick: self.stick,
-            buttons: self.buttons.clone(),
-            active: self.active,
-            hand: self.hand,
-            table_m: self.table_m,
-            capsules: self.capsules.clone(),
-            free: self.free,
-            has_failed: self.has_failed,
-            commanded: self.commanded,
-            correction: self.correction,
-        }
+/// The physics engine's working memory, which has no state: a copy of the world gets a new one.
+#[derive(Default)]
+struct WorkingMemory(PhysicsPipeline);
+
+impl Clone for WorkingMemory {
+    fn clone(&self) -> WorkingMemory {
+        WorkingMemory::default()
     }
 }
 
@@ -161,7 +141,7 @@ impl PhysicsWorld {
             impulse_joints: ImpulseJointSet::new(),
             multibodies: MultibodyJointSet::new(),
             ccd: CCDSolver::new(),
-            pipeline: PhysicsPipeline::new(),
+            pipeline: WorkingMemory::default(),
             joints: Vec::new(),
             links: Vec::new(),
             stick: None,
@@ -326,20 +306,12 @@ impl PhysicsWorld {
         match (&mut self.hand, hand) {
             (Some(one), Some(wanted)) => one.wanted = wanted,
             (None, Some(wanted)) => self.hand = Some(PhysicalHand::new(&mut self.bodies, wanted, self.table_m)),
-            (Some(_), None) => {
-                if let Some(one) = self.hand.take() {
-                    let (islands, colliders) = (&mut self.islands, &mut self.colliders);
-                    let joints = (&mut self.impulse_joints, &mut self.multibodies);
-                    self.bodies.remove(
-                        one.body(),
-                        islands,
-                        colliders,
-                        joints.0,
-                        joints.1,
-                        &mut SoftBodySet::new(),
-                        true,
-                    );
-                }
+            (Some(one), None) => {
+                let (islands, colliders) = (&mut self.islands, &mut self.colliders);
+                let (impulses, multibodies) = (&mut self.impulse_joints, &mut self.multibodies);
+                let none = &mut SoftBodySet::new();
+                self.bodies.remove(one.body(), islands, colliders, impulses, multibodies, none, true);
+                self.hand = None;
             }
             (None, None) => {}
         }
@@ -406,7 +378,7 @@ impl PhysicsWorld {
     }
 
     fn step(&mut self) {
-        self.pipeline.step(
+        self.pipeline.0.step(
             Vector::new(0.0, 0.0, GRAVITY_M_S2),
             &self.parameters,
             &mut self.islands,

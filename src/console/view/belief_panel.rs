@@ -76,8 +76,7 @@ pub fn draw(
     match focus {
         Some(belief) => panel.chart(brush, belief, inside),
         None if panel.beliefs.is_empty() => {
-            let quiet = brush.style(TextRole::Quiet);
-            brush.text(inside.x, inside.y, inside.width, BEFORE, quiet);
+            brush.text(inside.x, inside.y, inside.width, BEFORE, TextRole::Quiet);
         }
         None => panel.list(brush, inside),
     }
@@ -105,8 +104,7 @@ impl Panel<'_> {
         let is_false = |belief: &EstimatedBelief| belief.standing == BeliefCorrectness::False;
         let is_wide = area.width >= ONE_LINE;
         if !self.beliefs.iter().any(is_false) {
-            let quiet = brush.style(TextRole::Quiet);
-            brush.text(area.x, y, area.width, QUIET, quiet);
+            brush.text(area.x, y, area.width, QUIET, TextRole::Quiet);
             y += 1;
         }
         let told: Vec<&EstimatedBelief> =
@@ -122,9 +120,8 @@ impl Panel<'_> {
                 let left = told.len() - index;
                 let is_any_false = told[index..].iter().any(|belief| is_false(belief));
                 let role = if is_any_false { TextRole::FalseBelief } else { TextRole::Quiet };
-                let style = brush.style(role);
                 let words = format!("{} {left} more false or unsure beliefs", brush.theme.signs().ellipsis);
-                brush.text(area.x, y, area.width, &words, style);
+                brush.text(area.x, y, area.width, &words, role);
                 return;
             }
             match is_row {
@@ -134,13 +131,12 @@ impl Panel<'_> {
             brush.target(Rect { y, height: rows, ..area }, ClickAction::Belief(belief.aspect));
             y += rows;
         }
-        let quiet = brush.style(TextRole::Quiet);
         if right > 0 && y < area.bottom() {
             let words = match told.is_empty() {
                 true => count(right as u64, "belief is probably right", "beliefs are probably right"),
                 false => count(right as u64, "other is probably right", "others are probably right"),
             };
-            brush.text(area.x, y, area.width, &words, quiet);
+            brush.text(area.x, y, area.width, &words, TextRole::Quiet);
             y += 2;
         }
         // A belief that was right all the time needs no chart.
@@ -237,21 +233,18 @@ impl Panel<'_> {
     /// Draws a belief in several lines: its name and certainty, and below them what the participant believes and, if
     /// that is false, what is true.
     fn head(&self, brush: &mut Painter, belief: &EstimatedBelief, area: Rect, y: u16, lines: &[String]) {
-        let style = brush.style(role(belief));
         let end = self.end(belief, area.width);
         let (title, room) = (name(self.session, belief.aspect), area.width.saturating_sub(width(&end) + 1));
-        brush.text(area.x, y, room, &title, style);
-        brush.text_right(area.right(), y, area.width, &end, style);
-        let text = brush.style(TextRole::Text);
+        brush.text(area.x, y, room, &title, role(belief));
+        brush.text_right(area.right(), y, area.width, &end, role(belief));
         for (row, line) in lines.iter().enumerate() {
-            brush.text(area.x + 2, y + 1 + row as u16, area.width - 2, line, text);
+            brush.text(area.x + 2, y + 1 + row as u16, area.width - 2, line, TextRole::Text);
         }
     }
 
     fn row(&self, brush: &mut Painter, belief: &EstimatedBelief, area: Rect, y: u16) {
-        let style = brush.style(role(belief));
         let end = self.end(belief, area.width);
-        brush.text_right(area.right(), y, area.width, &end, style);
+        brush.text_right(area.right(), y, area.width, &end, role(belief));
         let (head, is) = self.sides(belief);
         // Words have priority over the probability bar, since the number shows the same.
         let mut room = area.width.saturating_sub(width(&end) + 1);
@@ -259,20 +252,18 @@ impl Panel<'_> {
             room -= BAR;
             brush.bar(area.x + room + 1, y, BAR - 1, f64::from(belief.p), role(belief));
         }
-        let x = brush.text(area.x, y, room, &head, style);
-        let text = brush.style(TextRole::Text);
-        brush.text(x, y, (area.x + room).saturating_sub(x), &is, text);
+        let x = brush.text(area.x, y, room, &head, role(belief));
+        brush.text(x, y, (area.x + room).saturating_sub(x), &is, TextRole::Text);
     }
 
     fn lines(&self, brush: &mut Painter, area: Rect) {
-        let quiet = brush.style(TextRole::Quiet);
-        let x = brush.text(area.x, area.y, area.width, " beliefs  ", quiet);
+        let x = brush.text(area.x, area.y, area.width, " beliefs  ", TextRole::Quiet);
         let room = area.width.saturating_sub(11);
         let told: Vec<&EstimatedBelief> =
             self.beliefs.iter().filter(|belief| belief.standing != BeliefCorrectness::Right).collect();
         if told.is_empty() {
             let words = if self.beliefs.is_empty() { BEFORE } else { QUIET };
-            brush.text(x, area.y, room, words, quiet);
+            brush.text(x, area.y, room, words, TextRole::Quiet);
         }
         for (row, belief) in told.iter().skip(self.from).take(usize::from(area.height)).enumerate() {
             let y = area.y + row as u16;
@@ -280,8 +271,7 @@ impl Panel<'_> {
             let more =
                 if row as u16 + 1 == area.height && more > 0 { format!("  +{more} more") } else { String::new() };
             let end = format!("{}{more}", self.certainty(belief));
-            let style = brush.style(role(belief));
-            brush.text_right(x + room, y, room, &end, style);
+            brush.text_right(x + room, y, room, &end, role(belief));
             let columns = room.saturating_sub(width(&end) + 1);
             let (thinks, truth) = self.values(belief);
             let line = match belief.standing {
@@ -290,7 +280,7 @@ impl Panel<'_> {
             };
             // What an order needs is its recipe.
             let line = if width(&line) > columns { line.trim_start_matches("recipe of ").to_string() } else { line };
-            brush.text(x, y, columns, &fit(&line, columns, brush.theme.signs().ellipsis), style);
+            brush.text(x, y, columns, &fit(&line, columns, brush.theme.signs().ellipsis), role(belief));
             brush.target(Rect { y, height: 1, ..area }, ClickAction::Belief(belief.aspect));
         }
     }
@@ -298,8 +288,6 @@ impl Panel<'_> {
     /// Draws the estimated probability of the truth over the last minute of the trial's clock, with axes.
     fn chart(&self, brush: &mut Painter, belief: &EstimatedBelief, area: Rect) {
         let (thinks, truth) = self.values(belief);
-        let style = brush.style(role(belief));
-        let quiet = brush.style(TextRole::Quiet);
         let name = name(self.session, belief.aspect);
         let right = wording::value(&self.session.kitchen, belief.aspect, belief.truth);
         let thought = match belief.standing {
@@ -312,14 +300,14 @@ impl Panel<'_> {
         let curve = "probability of the truth";
         match width(&thought) + width(curve) + 2 <= area.width {
             true => {
-                brush.text_right(area.right(), area.y, area.width, curve, quiet);
-                brush.text(area.x, area.y, area.width, &thought, style);
+                brush.text_right(area.right(), area.y, area.width, curve, TextRole::Quiet);
+                brush.text(area.x, area.y, area.width, &thought, role(belief));
             }
             false => {
                 let whole = format!("{name}: probability of {right}");
                 let titles = [whole, format!("{name}: {curve}"), format!("{name}: P(truth)")];
                 let fits = titles.iter().find(|title| width(title) <= area.width);
-                brush.text(area.x, area.y, area.width, fits.unwrap_or(&titles[2]), style);
+                brush.text(area.x, area.y, area.width, fits.unwrap_or(&titles[2]), role(belief));
             }
         }
         let plot = Rect {
@@ -331,10 +319,10 @@ impl Panel<'_> {
         if plot.height == 0 {
             return;
         }
-        brush.text_right(plot.x - 1, plot.y, SCALE, "100 %", quiet);
-        brush.text_right(plot.x - 1, plot.bottom() - 1, SCALE, "0 %", quiet);
+        brush.text_right(plot.x - 1, plot.y, SCALE, "100 %", TextRole::Quiet);
+        brush.text_right(plot.x - 1, plot.bottom() - 1, SCALE, "0 %", TextRole::Quiet);
         if plot.height >= 5 {
-            brush.text_right(plot.x - 1, plot.y + plot.height / 2, SCALE, "50 %", quiet);
+            brush.text_right(plot.x - 1, plot.y + plot.height / 2, SCALE, "50 %", TextRole::Quiet);
         }
         self.curve(brush, belief.aspect, plot);
         let axis = Rect { y: plot.bottom(), height: 1, ..plot };
@@ -348,14 +336,14 @@ impl Panel<'_> {
         let levels = brush.theme.signs().levels;
         for (column, p) in self.course(aspect, columns).iter().enumerate() {
             let Some(p) = p else { continue };
-            let style = brush.style(if *p < FALSE_BELOW { TextRole::FalseBelief } else { TextRole::Quiet });
+            let role = if *p < FALSE_BELOW { TextRole::FalseBelief } else { TextRole::Quiet };
             // Even a probability near zero is drawn, to be told from times without an estimate.
             let height = (p * f64::from(rows) * levels.len() as f64).ceil().max(1.0) as usize;
             for row in 0..rows {
                 let below = usize::from(rows - 1 - row) * levels.len();
                 if height > below {
                     let level = levels[(height - below).min(levels.len()) - 1];
-                    brush.text(x + column as u16, y + row, 1, level, style);
+                    brush.text(x + column as u16, y + row, 1, level, role);
                 }
             }
         }

@@ -280,15 +280,13 @@ impl Card {
         let rows = (facts.len() + lines.len()) as u16 + 4;
         let inside = open(brush, screen, (columns, rows), &self.title, "");
         let x = inside.x + 2;
-        let quiet = brush.style(TextRole::Quiet);
         for (row, (name, text, role)) in facts.iter().enumerate() {
             let y = inside.y + 1 + row as u16;
             if y + (lines.len() as u16) >= inside.bottom() {
                 break;
             }
-            brush.text(x, y, names, name, quiet);
-            let style = brush.style(*role);
-            brush.text(x + names, y, room, text, style);
+            brush.text(x, y, names, name, TextRole::Quiet);
+            brush.text(x + names, y, room, text, *role);
         }
         for (line, y) in lines.iter().rev().zip((inside.y..inside.bottom()).rev()) {
             let mut at = x;

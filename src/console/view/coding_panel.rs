@@ -88,12 +88,7 @@ fn draw_errors(brush: &mut Painter, regions: &PanelAreas, coding: &RaterSession,
     for (row, index) in (list.first..coding.errors.len()).enumerate().take(usize::from(list.rows.height)) {
         let error = &coding.errors[index];
         let line = Rect { y: list.rows.y + row as u16, height: 1, ..list.rows };
-        let mark = match (coding.chosen == Some(index), at == Some(index)) {
-            (true, _) => RowMark::Chosen,
-            (_, true) => RowMark::Present,
-            _ => RowMark::None,
-        };
-        draw_row(brush, line, codes_columns, coding, error, mark);
+        draw_row(brush, line, codes_columns, coding, error, (coding.chosen == Some(index), at == Some(index)));
         brush.target(line, ClickAction::Error(index));
     }
 }
@@ -107,16 +102,14 @@ fn share(coding: &RaterSession) -> f64 {
 fn draw_lines(brush: &mut Painter, head: Rect, coding: &RaterSession, events: usize) {
     let words = coding.next_step().unwrap_or_else(|| coding.progress());
     let (x, columns) = (head.x + 1, head.width.saturating_sub(1));
-    let strong = brush.style(TextRole::Strong);
-    let end = brush.text(x, head.y, columns, &format!("{}: {words}", coding.name()), strong);
+    let end = brush.text(x, head.y, columns, &format!("{}: {words}", coding.name()), TextRole::Strong);
     if end + BAR + 3 < head.right() {
         brush.bar(end + 2, head.y, BAR, share(coding), TextRole::Strong);
     }
     let own = coding.present(events).map(|error| coding.own(error)).unwrap_or_default();
     if !own.is_empty() {
-        let text = brush.style(TextRole::Text);
         let words = format!("{:columns$}", own.join("   "), columns = usize::from(columns));
-        brush.text(x, head.bottom().saturating_sub(1), columns, &words, text);
+        brush.text(x, head.bottom().saturating_sub(1), columns, &words, TextRole::Text);
     }
 }
 
@@ -149,45 +142,33 @@ fn draw_head(brush: &mut Painter, mut head: Rect, list: Rect, coding: &RaterSess
         lines.push(("enter goes to the human's first error".to_string(), TextRole::Quiet));
     }
     for (row, (line, role)) in lines.iter().enumerate().take(usize::from(head.height)) {
-        let style = brush.style(*role);
-        brush.text(x, head.y + row as u16, columns, line, style);
+        brush.text(x, head.y + row as u16, columns, line, *role);
     }
 }
 
-/// How a row of the error list is marked: the replay stands at its error, or the arrow keys have selected it.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum RowMark {
-    None,
-    Present,
-    Chosen,
-}
-
-/// Draws a row of the error list: number, time, press and codes.
+/// Draws a row of the error list: number, time, press and codes; with a mark where the arrow keys have selected it, or the
+/// replay stands at its error.
 fn draw_row(
     brush: &mut Painter,
     line: Rect,
     code_columns: u16,
     coding: &RaterSession,
     error: &ListedError,
-    mark: RowMark,
+    (is_chosen, is_present): (bool, bool),
 ) {
     let signs = brush.theme.signs();
-    let role = if mark == RowMark::None { TextRole::Text } else { TextRole::Strong };
-    let sign = match mark {
-        RowMark::Present => signs.to,
-        RowMark::Chosen => signs.cursor,
-        RowMark::None => " ",
+    let role = if is_chosen || is_present { TextRole::Strong } else { TextRole::Text };
+    let sign = match (is_chosen, is_present) {
+        (true, _) => signs.cursor,
+        (false, true) => signs.to,
+        (false, false) => " ",
     };
-    brush.parts(line.x, line.y, 1, &[(sign, TextRole::Strong)]);
-    let style = match mark {
-        RowMark::Chosen => brush.theme.badge(TextRole::Strong),
-        _ => brush.style(role),
-    };
-    let quiet = brush.style(TextRole::Quiet);
+    brush.text(line.x, line.y, 1, sign, TextRole::Strong);
+    let style = if is_chosen { brush.theme.badge(role) } else { brush.style(role) };
     let mut x = line.x + 1;
-    brush.text(x, line.y, NUMBER, &format!("{:>3} ", error.error), style);
+    brush.styled(x, line.y, NUMBER, &format!("{:>3} ", error.error), style);
     x += NUMBER;
-    brush.text(x, line.y, CLOCK, &format!("{:>5}", error.clock()), quiet);
+    brush.text(x, line.y, CLOCK, &format!("{:>5}", error.clock()), TextRole::Quiet);
     x += CLOCK;
     let right = line.right().saturating_sub(1);
     let press_columns = right.saturating_sub(x + code_columns + 1);
@@ -197,12 +178,12 @@ fn draw_row(
     } else {
         fit(&press_words(brush, error, line.width), press_columns, signs.ellipsis)
     };
-    brush.parts(x, line.y, press_columns, &[(&press, role)]);
+    brush.text(x, line.y, press_columns, &press, role);
     x += press_columns + 1;
     let words = code_words(coding, error, line.width);
     let role = if coding.code(error).is_some() { TextRole::Strong } else { TextRole::Quiet };
     let words = fit(&words, right.saturating_sub(x), signs.ellipsis);
-    brush.parts(x, line.y, right.saturating_sub(x), &[(&words, role)]);
+    brush.text(x, line.y, right.saturating_sub(x), &words, role);
 }
 
 /// The press with the reason why it was an error: "take salmon: order 1 needs tuna".

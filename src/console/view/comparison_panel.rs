@@ -7,7 +7,7 @@ use ratatui::style::Modifier;
 use super::paint::Painter;
 use super::regions::{PanelAreas, ROOMY_COLUMNS, ScreenSize};
 use super::theme::TextRole;
-use super::timeline::{axis, columns_ago};
+use super::timeline::{axis, columns_ago, signal_sign};
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::{KeyAction, ViewAction};
 use crate::console::text_columns::width;
@@ -33,14 +33,8 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
         false => brush.panel(area, TITLE, &window.unwrap_or_default()),
     };
     let Some(seen) = &compared.seen else {
-        let quiet = brush.style(TextRole::Quiet);
-        brush.text(
-            inside.x + 1,
-            inside.y,
-            inside.width,
-            "signals are compared from the first order or press on",
-            quiet,
-        );
+        let words = "signals are compared from the first order or press on";
+        brush.text(inside.x + 1, inside.y, inside.width, words, TextRole::Quiet);
         return;
     };
     let plot = Rect { x: inside.x + LABELS, width: inside.width.saturating_sub(LABELS + 1), ..inside };
@@ -81,8 +75,7 @@ struct View<'a> {
 impl View<'_> {
     /// Terminal column of a session time, if that time is visible.
     fn column(&self, time: SessionTime) -> Option<u16> {
-        let back = (f64::from(self.model.timeline_back_s) / COLUMN_S) as i64;
-        let age = columns_ago(self.session, self.model, time, COLUMN_S) - back;
+        let age = columns_ago(self.session, self.model, time, COLUMN_S);
         (0..i64::from(self.plot.width)).contains(&age).then(|| self.plot.right() - 1 - age as u16)
     }
 
@@ -90,16 +83,15 @@ impl View<'_> {
         if y >= self.plot.bottom() {
             return;
         }
-        let style = brush.style(if lane == 0 { TextRole::Signal } else { TextRole::Strong });
-        brush.text(self.plot.x - LABELS + 1, y, LABELS - 1, &self.seen.lanes[lane].name, style);
+        let role = if lane == 0 { TextRole::Signal } else { TextRole::Strong };
+        brush.text(self.plot.x - LABELS + 1, y, LABELS - 1, &self.seen.lanes[lane].name, role);
         for (index, spoken) in self.seen.lanes[lane].spoken.iter().enumerate() {
             let Some(x) = self.column(spoken.time) else { continue };
             let is_chosen = self.chosen.is_some_and(|chosen| (chosen.lane, chosen.index) == (lane, index));
-            let role = if lane == 0 { TextRole::Signal } else { TextRole::Strong };
             let style =
                 if is_chosen { brush.style(role).add_modifier(Modifier::UNDERLINED) } else { brush.style(role) };
             let sign = self.sign(brush, spoken);
-            brush.text(x, y, 1, &sign, style);
+            brush.styled(x, y, 1, &sign, style);
         }
     }
 
@@ -108,8 +100,7 @@ impl View<'_> {
         if spoken.what.kind() == SignalKind::Proposal {
             return brush.theme.signs().by_hand.to_string();
         }
-        let location = spoken.what.location(&self.session.kitchen);
-        location.and_then(|id| self.model.keys.mark(id)).map_or("!".to_string(), |chord| chord.to_string())
+        signal_sign(self.session, self.model, &spoken.what)
     }
 
     /// Draws lines from the communications of the first lane to their matches in this lane.
@@ -118,20 +109,19 @@ impl View<'_> {
             return;
         }
         let [top_left, top_right, bottom_left, bottom_right, across, down] = brush.theme.signs().frame;
-        let style = brush.style(TextRole::Quiet);
         for &(of, with) in &self.seen.pairs[lane - 1].matched {
             let times = [self.seen.lanes[0].spoken[of].time, self.seen.lanes[lane].spoken[with].time];
             let [Some(from), Some(to)] = times.map(|time| self.column(time)) else { continue };
             for x in from.min(to)..from.max(to) {
-                brush.text(x, y, 1, across, style);
+                brush.text(x, y, 1, across, TextRole::Quiet);
             }
             let (start, end) = match from.cmp(&to) {
                 std::cmp::Ordering::Equal => (down, down),
                 std::cmp::Ordering::Less => (bottom_left, top_right),
                 std::cmp::Ordering::Greater => (bottom_right, top_left),
             };
-            brush.text(from, y, 1, start, style);
-            brush.text(to, y, 1, end, style);
+            brush.text(from, y, 1, start, TextRole::Quiet);
+            brush.text(to, y, 1, end, TextRole::Quiet);
         }
     }
 }
@@ -169,15 +159,9 @@ fn differences(
     model: &ConsoleModel,
 ) {
     let Some((at, _)) = chosen.filter(|_| area.height > 0) else {
-        let quiet = brush.style(TextRole::Quiet);
         if area.height > 0 {
-            brush.text(
-                area.x + 1,
-                area.y,
-                area.width - 1,
-                "signals of wizard and assistant do not differ so far",
-                quiet,
-            );
+            let words = "signals of wizard and assistant do not differ so far";
+            brush.text(area.x + 1, area.y, area.width - 1, words, TextRole::Quiet);
         }
         return;
     };
@@ -194,6 +178,6 @@ fn differences(
         let headline = seen.headline(difference);
         let room = area.width.saturating_sub(width(&open) + 1);
         let x = brush.parts(area.x + 1, y, room, &[(&number, TextRole::Quiet), (&headline, role)]);
-        brush.parts(x, y, area.right().saturating_sub(x), &[(&open, TextRole::Signal)]);
+        brush.text(x, y, area.right().saturating_sub(x), &open, TextRole::Signal);
     }
 }

@@ -88,7 +88,7 @@ fn ask(brush: &mut Painter, screen: Rect, title: &str, lines: &[&str], yes: &str
     let widest = lines.iter().map(|line| width(line)).max().unwrap_or(0);
     let inside = open(brush, screen, ((widest + 5).max(46), lines.len() as u16 + 5), title, "");
     for (row, line) in lines.iter().enumerate() {
-        brush.parts(inside.x + 2, inside.y + 1 + row as u16, inside.width - 3, &[(line, TextRole::Text)]);
+        brush.text(inside.x + 2, inside.y + 1 + row as u16, inside.width - 3, line, TextRole::Text);
     }
     let hints = [(yes, "yes", Some(KeyChord::char('y'))), ("any other key", "no", Some(KeyChord::plain(KeyCode::Esc)))];
     brush.hints(inside.x + 2, inside.bottom() - 1, inside.width - 3, &hints);
@@ -104,8 +104,8 @@ fn difference(brush: &mut Painter, screen: Rect, lines: &[String]) {
     let rows = wrapped.len() as u16 + 2;
     let inside = open(brush, screen, (columns, rows), "What wizard and assistant knew", "any key closes");
     for (row, (is_head, line)) in wrapped.iter().enumerate().take(usize::from(inside.height)) {
-        let style = brush.style(if *is_head { TextRole::Strong } else { TextRole::Text });
-        brush.text(inside.x + 1, inside.y + row as u16, inside.width - 2, line, style);
+        let role = if *is_head { TextRole::Strong } else { TextRole::Text };
+        brush.text(inside.x + 1, inside.y + row as u16, inside.width - 2, line, role);
     }
 }
 
@@ -137,8 +137,8 @@ fn report(brush: &mut Painter, screen: Rect, lines: &[String], model: &ConsoleMo
     let size = (columns, lines.len().min(rows) as u16 + 4);
     let inside = open(brush, screen, size, "The training is over", remark);
     for (row, line) in lines.iter().skip(from).take(rows).enumerate() {
-        let style = brush.style(if from + row == 0 { TextRole::Strong } else { TextRole::Text });
-        brush.text(inside.x + 1, inside.y + row as u16, inside.width - 2, line, style);
+        let role = if from + row == 0 { TextRole::Strong } else { TextRole::Text };
+        brush.text(inside.x + 1, inside.y + row as u16, inside.width - 2, line, role);
     }
     let hints = [("enter", "continue; this report is saved", Some(KeyChord::plain(KeyCode::Enter)))];
     brush.hints(inside.x + 1, inside.bottom().saturating_sub(1), inside.width - 2, &hints);
@@ -199,12 +199,12 @@ fn line(brush: &mut Painter, inside: Rect, y: u16, check: &PreflightCheck, found
         PreflightVerdict::Warning => ("warning", TextRole::Strong),
         PreflightVerdict::Failed => ("FAILED", TextRole::Alarm),
     };
-    brush.parts(inside.x + 1, y, 8, &[(word, role)]);
-    brush.parts(inside.x + 10, y, FOUND - 11, &[(&check.name, TextRole::Text)]);
+    brush.text(inside.x + 1, y, 8, word, role);
+    brush.text(inside.x + 10, y, FOUND - 11, &check.name, TextRole::Text);
     let x = inside.x + FOUND;
     let rows = y..y + found.len().max(1) as u16;
     for (y, words) in rows.clone().zip(found) {
-        brush.parts(x, y, inside.right().saturating_sub(x + 1), &[(words, role)]);
+        brush.text(x, y, inside.right().saturating_sub(x + 1), words, role);
     }
     rows.end
 }
@@ -261,14 +261,12 @@ fn input_line(brush: &mut Painter, screen: Rect, text: &TextInput, (title, remar
     let inside = open(brush, screen, size, title, remark);
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     let [before, under, after] = text.parts(usize::from(columns));
-    let style = brush.style(TextRole::Strong);
     let badge = brush.theme.badge(TextRole::Text);
-    let at = brush.text(x, inside.y + 1, columns, &before, style);
-    let at = brush.text(at, inside.y + 1, (x + columns).saturating_sub(at), &under, badge);
-    brush.text(at, inside.y + 1, (x + columns).saturating_sub(at), &after, style);
-    let quiet = brush.style(TextRole::Quiet);
+    let at = brush.text(x, inside.y + 1, columns, &before, TextRole::Strong);
+    let at = brush.styled(at, inside.y + 1, (x + columns).saturating_sub(at), &under, badge);
+    brush.text(at, inside.y + 1, (x + columns).saturating_sub(at), &after, TextRole::Strong);
     for (row, line) in lines.iter().enumerate() {
-        brush.text(x, inside.y + 3 + row as u16, columns, line, quiet);
+        brush.text(x, inside.y + 3 + row as u16, columns, line, TextRole::Quiet);
     }
     let [enter, esc] = [KeyCode::Enter, KeyCode::Esc].map(|code| Some(KeyChord::plain(code)));
     let hints = [("enter", "save the text", enter), ("esc", "cancel", esc)];
@@ -368,8 +366,7 @@ impl ListPage<'_> {
         let typed = format!("{}_", self.cursor.filter);
         let found = format!("{} of {}", self.rows.len(), self.all);
         brush.parts(x, inside.y, columns, &[(self.types, TextRole::Quiet), (&typed, TextRole::Strong)]);
-        let quiet = brush.style(TextRole::Quiet);
-        brush.text_right(x + columns, inside.y, 12, &found, quiet);
+        brush.text_right(x + columns, inside.y, 12, &found, TextRole::Quiet);
         let list = Rect { x, y: inside.y + 2, width: columns, height: inside.height.saturating_sub(4) };
         let shown = usize::from(list.height).max(1);
         let first = self.cursor.at.saturating_sub(shown / 2).min(self.rows.len().saturating_sub(shown));
@@ -379,7 +376,7 @@ impl ListPage<'_> {
             brush.target(cells, ClickAction::Row(first + line));
         }
         if self.rows.is_empty() {
-            brush.text(list.x, list.y, list.width, "no entry matches; bksp deletes a letter", quiet);
+            brush.text(list.x, list.y, list.width, "no entry matches; bksp deletes a letter", TextRole::Quiet);
         }
         let [enter, esc] = [KeyCode::Enter, KeyCode::Esc].map(|code| Some(KeyChord::plain(code)));
         let hints = [(self.selects, "select", None), ("enter", self.takes, enter), ("esc", "back", esc)];
@@ -404,8 +401,7 @@ impl Row {
             (self.label.as_str(), role),
         ];
         brush.parts(cells.x, cells.y, label + 2, &parts);
-        let quiet = brush.style(TextRole::Quiet);
-        brush.text_right(cells.right(), cells.y, remark, &self.remark, quiet);
+        brush.text_right(cells.right(), cells.y, remark, &self.remark, TextRole::Quiet);
     }
 }
 
@@ -432,11 +428,10 @@ pub(super) fn open(brush: &mut Painter, screen: Rect, size: (u16, u16), title: &
     // Click targets under the dialog are removed; those of the hint line are drawn later.
     brush.targets.clear();
     blank(brush, area);
-    let style = brush.style(TextRole::Strong);
-    brush.frame(area, &brush.theme.signs().frame, style);
-    brush.text(area.x + 2, area.y, columns, &format!(" {title} "), style);
+    brush.frame(area, TextRole::Strong);
+    brush.text(area.x + 2, area.y, columns, &format!(" {title} "), TextRole::Strong);
     if !remark.is_empty() {
-        brush.text_right(area.right() - 2, area.y, columns, &format!(" {remark} "), style);
+        brush.text_right(area.right() - 2, area.y, columns, &format!(" {remark} "), TextRole::Strong);
     }
     inside(area)
 }

@@ -25,7 +25,7 @@ pub fn draw_presses(brush: &mut Painter, regions: &PanelAreas, session: &Session
     }
     let inside = match regions.screen_size {
         ScreenSize::Small => {
-            brush.parts(area.x, area.y, LABEL, &[(" presses", TextRole::Quiet)]);
+            brush.text(area.x, area.y, LABEL, " presses", TextRole::Quiet);
             // The clock is right-aligned in columns that include the gap before it.
             Rect { x: area.x + LABEL - 1, width: area.width.saturating_sub(LABEL - 1), ..area }
         }
@@ -87,15 +87,14 @@ fn row(brush: &mut Painter, line: Rect, session: &Session, model: &ConsoleModel,
         TimelineEvent::Noted(Event::RobotTouched { .. }) => TextRole::Robot,
         _ => TextRole::Strong,
     };
-    let quiet = brush.style(TextRole::Quiet);
-    brush.text_right(line.x + CLOCK - 1, line.y, CLOCK - 1, &at, quiet);
+    brush.text_right(line.x + CLOCK - 1, line.y, CLOCK - 1, &at, TextRole::Quiet);
     let x = line.x + CLOCK;
-    brush.parts(x, line.y, WHO - 1, &[(who, role)]);
+    brush.text(x, line.y, WHO - 1, who, role);
     let x = x + WHO;
     let columns = line.right().saturating_sub(x + 1);
     // The reason of an error tells a recipe, which whoever plays the participant at this keyboard has to remember.
     let Some(error) = model.error(entry).filter(|_| model.layer == KeyLayer::Wizard) else {
-        brush.parts(x, line.y, columns, &[(&what, TextRole::Text)]);
+        brush.text(x, line.y, columns, &what, TextRole::Text);
         return 1;
     };
     // The reason has priority over what the press took or made, and says why a press had no effect.
@@ -105,19 +104,14 @@ fn row(brush: &mut Painter, line: Rect, session: &Session, model: &ConsoleModel,
     let fits = |pressed: &str| width(&mark) + width(pressed) + 2 + width(&error.why) <= columns;
     let pressed: &str = if fits(&whole) { &whole } else { &error.press };
     let gap = if pressed.contains(':') { "; " } else { ": " };
-    let end = brush.parts(
-        x,
-        line.y,
-        columns,
-        &[(&mark, TextRole::Strong), (pressed, TextRole::Text), (gap, TextRole::Quiet)],
-    );
-    let badge = brush.theme.badge(TextRole::Strong);
-    brush.text(x, line.y, 1, brush.theme.signs().error, badge);
+    let parts = [(mark.as_str(), TextRole::Strong), (pressed, TextRole::Text), (gap, TextRole::Quiet)];
+    let end = brush.parts(x, line.y, columns, &parts);
+    brush.styled(x, line.y, 1, brush.theme.signs().error, brush.theme.badge(TextRole::Strong));
     if fits(pressed) || line.height < 2 {
-        brush.parts(end, line.y, (x + columns).saturating_sub(end), &[(&error.why, TextRole::Strong)]);
+        brush.text(end, line.y, (x + columns).saturating_sub(end), &error.why, TextRole::Strong);
         return 1;
     }
     let x = line.x + CLOCK;
-    brush.parts(x, line.y + 1, line.right().saturating_sub(x + 1), &[(&error.why, TextRole::Strong)]);
+    brush.text(x, line.y + 1, line.right().saturating_sub(x + 1), &error.why, TextRole::Strong);
     2
 }

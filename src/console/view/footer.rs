@@ -32,7 +32,7 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     if !model.focused && model.playback.is_none() {
         let alarm = brush.theme.badge(TextRole::Alarm);
         let words = " KEYBOARD FOCUS LOST: keys and robot stop do not work; click into this window ";
-        brush.text(area.x, area.y, area.width, &format!("{words:<width$}", width = usize::from(area.width)), alarm);
+        brush.styled(area.x, area.y, area.width, &format!("{words:<width$}", width = usize::from(area.width)), alarm);
         return;
     }
     let mut x = area.x;
@@ -41,8 +41,7 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
             KeyLayer::Wizard => (" KEYS: WIZARD ", TextRole::Strong),
             KeyLayer::Participant => (" KEYS: PARTICIPANT ", TextRole::Human),
         };
-        let badge = brush.theme.badge(role);
-        x = brush.text(x, area.y, area.width, label, badge);
+        x = brush.styled(x, area.y, area.width, label, brush.theme.badge(role));
     }
     // The hints for ending the trial and for a typed note are the first to be left out if there is no room, since they
     // are rarely needed; after the trial, the hints for the next step come first.
@@ -81,16 +80,14 @@ impl Hint<'_> {
     fn draw(&self, brush: &mut Painter, x: u16, y: u16) -> u16 {
         let mut at = x;
         for (key, click) in &self.keys {
-            let style = brush.style(self.role);
-            let end = brush.text(at, y, width(key), key, style);
+            let end = brush.text(at, y, width(key), key, self.role);
             if let Some(action) = click {
                 brush.target(Rect { x: at, y, width: end - at, height: 1 }, *action);
             }
             at = end;
         }
         let words = format!(" {}", self.label);
-        let style = brush.style(TextRole::Quiet);
-        let end = brush.text(at, y, width(&words), &words, style);
+        let end = brush.text(at, y, width(&words), &words, TextRole::Quiet);
         if let Some(action) = self.keys.iter().find_map(|(_, click)| *click) {
             brush.target(Rect { x: at, y, width: end - at, height: 1 }, action);
         }
@@ -144,7 +141,7 @@ pub fn message(brush: &mut Painter, regions: &PanelAreas, session: &Session, mod
         let words = wording::signal(&confirmation.signal);
         let strong = brush.theme.badge(TextRole::Strong);
         let text = format!(" Send {words}? enter or a second click sends it, esc cancels ");
-        brush.text(area.x + 1, area.y, area.width - 1, &text, strong);
+        brush.styled(area.x + 1, area.y, area.width - 1, &text, strong);
         return;
     }
     if let Some(check) = session.calibration.as_ref().filter(|check| check.result.is_none()) {
@@ -155,25 +152,22 @@ pub fn message(brush: &mut Painter, regions: &PanelAreas, session: &Session, mod
             ParticipantKind::Keyboard | ParticipantKind::External => "ask the participant to look at the cross",
         };
         let text = format!(" Gaze check, target {at} of {all}: {who}; esc ends it ");
-        let strong = brush.style(TextRole::Strong);
-        brush.text(area.x + 1, area.y, area.width - 1, &text, strong);
+        brush.text(area.x + 1, area.y, area.width - 1, &text, TextRole::Strong);
         return;
     }
     if let Some(notice) = model.shown_notice() {
         let style = style_of(brush, notice);
-        brush.text(area.x + 1, area.y, area.width - 1, &format!(" {} ", notice.text), style);
+        brush.styled(area.x + 1, area.y, area.width - 1, &format!(" {} ", notice.text), style);
     } else if let Some((_, landmark)) = model.playback.as_ref().and_then(Playback::stands_at) {
-        let strong = brush.style(TextRole::Strong);
         let (columns, ellipsis) = (area.width.saturating_sub(3), brush.theme.signs().ellipsis);
         for (row, line) in wrap_to(landmark, columns, area.height, ellipsis).iter().enumerate() {
-            brush.text(area.x + 2, area.y + row as u16, columns, line, strong);
+            brush.text(area.x + 2, area.y + row as u16, columns, line, TextRole::Strong);
         }
     } else if session.robot.stopped && !session.robot.is_stopped_by_wizard() {
         let why = event_words::why_stopped(&session.robot.arm);
         let resume = model.keys.chord_for(&KeyAction::ResumeRobot).filter(|_| model.playback.is_none());
         let resume = resume.map_or(String::new(), |key| format!("; {key} resumes the arm"));
-        let alarm = brush.style(TextRole::Alarm);
-        brush.text(area.x + 2, area.y, area.width - 2, &format!("Arm stopped: {why}{resume}"), alarm);
+        brush.text(area.x + 2, area.y, area.width - 2, &format!("Arm stopped: {why}{resume}"), TextRole::Alarm);
     }
 }
 

@@ -36,7 +36,7 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
         return;
     }
     if regions.screen_size == ScreenSize::Small {
-        brush.parts(area.x, area.y, area.width, &[(" gaze     ", TextRole::Quiet)]);
+        brush.text(area.x, area.y, area.width, " gaze     ", TextRole::Quiet);
         line(brush, area.x + 10, area.y, area.width.saturating_sub(11), session, model, true);
         return;
     }
@@ -60,9 +60,9 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
         let whole = format!("{why}; {share:.0} % of all samples");
         let fits = loss.cause == GazeLossCause::Unusable && width(&whole) <= columns;
         let told = if fits { whole } else { why };
-        brush.parts(x, inside.y + 1, columns, &[(&told, TextRole::Text)]);
+        brush.text(x, inside.y + 1, columns, &told, TextRole::Text);
     } else if let Some(code) = pairing(session, model) {
-        brush.parts(x, inside.y + 1, columns, &[(&code, TextRole::Text)]);
+        brush.text(x, inside.y + 1, columns, &code, TextRole::Text);
     }
 }
 
@@ -96,7 +96,7 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
     let room = columns.saturating_sub(width(&age));
     let sign = format!("{} ", brush.theme.signs().gaze);
     let end = brush.parts(x, y, room, &[(&sign, TextRole::Gaze), (&place, TextRole::Gaze)]);
-    brush.parts(end, y, width(&age), &[(&age, TextRole::Quiet)]);
+    brush.text(end, y, width(&age), &age, TextRole::Quiet);
 }
 
 /// The place of a point of the display, in words.
@@ -215,8 +215,7 @@ pub fn draw_map(brush: &mut Painter, regions: &PanelAreas, session: &Session, mo
     for (at, sample) in &model.trail {
         if model.now.secs_since(*at) < TRAIL_S {
             let (x, y) = cell([sample.x, sample.y]);
-            let style = brush.style(TextRole::Gaze);
-            brush.text(x, y, 1, signs.trail, style);
+            brush.text(x, y, 1, signs.trail, TextRole::Gaze);
         }
     }
     let mut labels: Vec<Rect> = Vec::new();
@@ -244,20 +243,18 @@ pub fn draw_map(brush: &mut Painter, regions: &PanelAreas, session: &Session, mo
         let Some(place) = free(inside, &labels, (x, y), width(&label).max(width(&age))) else { continue };
         labels.push(place);
         for (row, text, role) in [(0, &label, TextRole::Quiet), (1, &age, role)] {
-            let style = brush.style(role);
             let margin = (place.width.saturating_sub(width(text))) / 2;
-            brush.text(place.x + margin, place.y + row, place.width, text, style);
+            brush.text(place.x + margin, place.y + row, place.width, text, role);
         }
     }
     if let Some((_, sample)) = session.gaze.last {
         let (x, y) = cell([sample.x, sample.y]);
-        let style = brush.style(TextRole::Gaze);
         // Text under the gaze stays readable: the sign stands in the nearest free cell of the row.
         let is_free = |at: &u16| !labels.iter().any(|label| label.contains((*at, y).into()));
         let near =
             (0..inside.width).flat_map(|by| [x.saturating_sub(by).max(inside.x), (x + by).min(inside.right() - 1)]);
         let x = near.into_iter().find(is_free).unwrap_or(x);
-        brush.text(x, y, 1, signs.gaze, style);
+        brush.text(x, y, 1, signs.gaze, TextRole::Gaze);
     }
 }
 
@@ -311,14 +308,14 @@ pub(super) fn mark(
     let covers_text = has_text(x) || (has_text(x.saturating_sub(1)) && has_text(x + 1));
     let spot = plan.spots.iter().find(|spot| spot.cells.contains((x, y).into())).filter(|_| covers_text);
     let Some(spot) = spot else {
-        brush.text(x, y, 1, sign, style);
+        brush.styled(x, y, 1, sign, style);
         return;
     };
     let cells = spot.cells;
     let is_free = |x: &u16| !brush.is_written(*x, cells.y) && !brush.is_written(x.saturating_sub(1), cells.y);
     let gap = Some(cells.right()).filter(|x| !brush.is_written(*x, cells.y));
     let free = (cells.x + 1..cells.right()).find(is_free).or(gap);
-    brush.text(free.unwrap_or(cells.x), cells.y, 1, sign, style);
+    brush.styled(free.unwrap_or(cells.x), cells.y, 1, sign, style);
 }
 
 const COLUMNS: u16 = 76;
@@ -338,7 +335,7 @@ pub fn draw_target(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session:
         if before == 1 { text } else { format!(" look here: target {} of {} + ", index + 1, check.targets.len()) };
     let badge = brush.theme.badge(TextRole::Gaze);
     let (x, y) = (x.saturating_sub(before).max(panel.x), y.clamp(panel.y, panel.bottom().saturating_sub(1)));
-    brush.text(x, y, columns, &text, badge);
+    brush.styled(x, y, columns, &text, badge);
 }
 
 pub fn draw_accuracy_check(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel) {
@@ -347,8 +344,8 @@ pub fn draw_accuracy_check(brush: &mut Painter, screen: Rect, session: &Session,
     let columns = inside.width.saturating_sub(2);
     let mut y = inside.y + 1;
     let mut line = |brush: &mut Painter, name: &str, text: &str, role: TextRole| {
-        brush.parts(inside.x + 1, y, VALUE, &[(name, TextRole::Quiet)]);
-        brush.parts(inside.x + 1 + VALUE, y, columns.saturating_sub(VALUE), &[(text, role)]);
+        brush.text(inside.x + 1, y, VALUE, name, TextRole::Quiet);
+        brush.text(inside.x + 1 + VALUE, y, columns.saturating_sub(VALUE), text, role);
         y += 1;
     };
     let esc = KeyChord::plain(KeyCode::Esc);

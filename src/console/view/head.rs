@@ -115,12 +115,11 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     }
     let mut x = area.x + 1;
     for part in &parts {
-        x = brush.text(x, area.y, area.right().saturating_sub(x), &part.text, part.style) + part.gap(gap);
+        x = brush.styled(x, area.y, area.right().saturating_sub(x), &part.text, part.style) + part.gap(gap);
     }
     let mut right = area.right().saturating_sub(needed(&healths)).max(x);
     for (text, role) in healths {
-        let style = brush.style(role);
-        right = brush.text(right, area.y, area.right().saturating_sub(right), &text, style) + gap;
+        right = brush.text(right, area.y, area.right().saturating_sub(right), &text, role) + gap;
     }
 }
 

@@ -10,8 +10,8 @@ use crate::console::console_model::{ConsoleModel, Dialog};
 use crate::console::key_action::{KeyBinding, KeyLayer};
 use crate::console::text_columns::width;
 
-/// Least width of a column of the help, in characters.
-const HELP_COLUMNS: u16 = 39;
+/// Least width of a column of the help, in characters: no line is longer.
+const HELP_COLUMNS: u16 = 58;
 /// Indent of the description in a help line, in characters.
 const HELP_INDENT: u16 = 7;
 
@@ -63,7 +63,7 @@ fn legend(signs: &Glyphs) -> Vec<Line<'static>> {
         (signs.served, "order served; item of an order that is there"),
         (signs.dash, "trial excluded from the analysis"),
         (signs.in_work, "item of an order in work; dish that was begun"),
-        (signs.missing, "item of an order that is missing; step that is left"),
+        (signs.missing, "missing item of an order; step that is left"),
         ("+", "new order; further entries without room"),
         (signs.taken_back, "signal taken back; robot's press skipped"),
         (signs.by_hand, "manual intervention of the experimenter"),
@@ -73,7 +73,7 @@ fn legend(signs: &Glyphs) -> Vec<Line<'static>> {
         (signs.pause, "trial paused; robot held"),
         ("*", "note that the wizard typed"),
         (signs.cursor, "selected row of a list"),
-        ("!", "keyboard focus or gaze was lost; a line as long as the loss of gaze"),
+        ("!", "keyboard focus or gaze lost; a line: gaze is lost"),
     ];
     meanings.map(|(sign, meaning)| Line::Sign(sign, meaning)).to_vec()
 }
@@ -134,13 +134,11 @@ fn help_line(brush: &mut Painter, x: u16, y: u16, columns: u16, line: &Line) {
     match line {
         Line::Space => {}
         Line::Heading(text) => {
-            let style = brush.style(TextRole::Strong);
-            brush.text(x, y, columns, text, style);
+            brush.text(x, y, columns, text, TextRole::Strong);
         }
         Line::Sign(sign, meaning) => {
-            let style = brush.style(TextRole::Strong);
-            brush.text_right(x + HELP_INDENT - 1, y, HELP_INDENT - 1, sign, style);
-            brush.parts(x + HELP_INDENT, y, columns.saturating_sub(HELP_INDENT), &[(meaning, TextRole::Text)]);
+            brush.text_right(x + HELP_INDENT - 1, y, HELP_INDENT - 1, sign, TextRole::Strong);
+            brush.text(x + HELP_INDENT, y, columns.saturating_sub(HELP_INDENT), meaning, TextRole::Text);
         }
         Line::Key(binding, has_effect) => {
             let (key, indent) = (key_name(binding), key_indent(binding));
@@ -150,10 +148,9 @@ fn help_line(brush: &mut Painter, x: u16, y: u16, columns: u16, line: &Line) {
                 Some(KeyLayer::Participant) => TextRole::Human,
                 None => TextRole::Strong,
             };
-            let style = brush.style(role);
-            brush.text_right(x + indent - 1, y, indent - 1, &key, style);
+            brush.text_right(x + indent - 1, y, indent - 1, &key, role);
             let text = if *has_effect { TextRole::Text } else { TextRole::Quiet };
-            brush.parts(x + indent, y, columns.saturating_sub(indent), &[(&binding.help, text)]);
+            brush.text(x + indent, y, columns.saturating_sub(indent), &binding.help, text);
         }
     }
 }

@@ -114,13 +114,12 @@ fn zones(brush: &mut Painter, plan: &KitchenMap) {
             None => ("SHARED", TextRole::Quiet),
         };
         let line = zone.cells.width.saturating_sub(1);
-        let thin = brush.style(TextRole::Frame);
         let rule = brush.theme.signs().frame[4].repeat(usize::from(line));
-        brush.text(zone.cells.x, zone.cells.y, line, &rule, thin);
+        brush.text(zone.cells.x, zone.cells.y, line, &rule, TextRole::Frame);
         let label = format!(" {name} ");
         let x = zone.cells.x + (line.saturating_sub(width(&label))) / 2;
         let style = brush.style(role).add_modifier(Modifier::BOLD).remove_modifier(Modifier::DIM);
-        brush.text(x, zone.cells.y, line, &label, style);
+        brush.styled(x, zone.cells.y, line, &label, style);
     }
 }
 
@@ -128,12 +127,11 @@ fn storage(brush: &mut Painter, session: &Session, model: &ConsoleModel, index: 
     let storage = &session.kitchen.storages[index];
     let is_it = |action: ButtonAction| action == ButtonAction::Take(storage.item);
     let key = participant_key(session, model, storage.agent, is_it);
-    let text = brush.style(TextRole::Text);
     let x = match key {
         Some(key) => badge(brush, cells.x, cells, key, TextRole::Human),
         None => cells.x,
     };
-    let end = brush.text(x + 1, cells.y, cells.right().saturating_sub(x + 1), &storage.label, text);
+    let end = brush.text(x + 1, cells.y, cells.right().saturating_sub(x + 1), &storage.label, TextRole::Text);
     if let Some(key) = key {
         brush.key_target(cells.x, cells.y, end, key);
     }
@@ -141,8 +139,7 @@ fn storage(brush: &mut Painter, session: &Session, model: &ConsoleModel, index: 
 
 fn badge(brush: &mut Painter, x: u16, cells: Rect, key: KeyChord, role: TextRole) -> u16 {
     let style = brush.style(role).add_modifier(Modifier::BOLD);
-    let label = format!("[{key}]");
-    brush.text(x, cells.y, cells.right().saturating_sub(x), &label, style)
+    brush.styled(x, cells.y, cells.right().saturating_sub(x), &format!("[{key}]"), style)
 }
 
 /// Key of the first button of an agent that satisfies `is_it`, while the participant's keys are active.
@@ -218,7 +215,7 @@ impl<'a> Place<'a> {
         let room = Rect { height: free, ..below };
         let mut lines = self.contents(brush, room);
         if self.is_blocked && lines < room.height {
-            brush.parts(room.x, room.y + lines, room.width, &[("fits no order", TextRole::Strong)]);
+            brush.text(room.x, room.y + lines, room.width, "fits no order", TextRole::Strong);
             lines += 1;
         }
         match buttons.is_empty() {
@@ -240,9 +237,8 @@ impl<'a> Place<'a> {
             (_, Some((_, by))) => (signs.rules[1], agent_role(by)),
             _ => (signs.rules[0], if self.is_empty { TextRole::Frame } else { TextRole::Quiet }),
         };
-        let style = brush.style(role);
         for y in cells.y..cells.bottom() {
-            brush.text(cells.x, y, 1, sign, style);
+            brush.text(cells.x, y, 1, sign, role);
         }
     }
 
@@ -260,7 +256,7 @@ impl<'a> Place<'a> {
             false => brush.style(if self.is_empty { TextRole::Quiet } else { TextRole::Text }),
         };
         let label = if width(&label) < cells.right().saturating_sub(x) { format!(" {label}") } else { label };
-        let end = brush.text(x, cells.y, right.saturating_sub(x), &label, style);
+        let end = brush.styled(x, cells.y, right.saturating_sub(x), &label, style);
         if let Some((key, _)) = self.key() {
             brush.key_target(cells.x, cells.y, end, key);
         }
@@ -320,7 +316,7 @@ impl<'a> Place<'a> {
             lines.push(squeeze(&rest, room.width, ellipsis));
         }
         for (row, line) in lines.iter().take(usize::from(room.height)).enumerate() {
-            brush.text(room.x, room.y + row as u16, room.width, line, style);
+            brush.styled(room.x, room.y + row as u16, room.width, line, style);
         }
         lines.len() as u16
     }
@@ -343,7 +339,6 @@ impl<'a> Place<'a> {
     /// Draws the false belief about the location below the first lines, or at the end of the last line if none is free.
     fn belief(&self, brush: &mut Painter, room: Rect, lines: u16) {
         let Some((thinks, _)) = &self.thinks else { return };
-        let style = brush.style(TextRole::FalseBelief);
         let words = thinks_of(thinks);
         if lines < room.height {
             let rows = wrap(&words, room.width);
@@ -351,7 +346,7 @@ impl<'a> Place<'a> {
             let fits = rows.len() <= usize::from(room.height - lines);
             let rows = if fits { rows } else { vec![FALSE_BELIEF.to_string()] };
             for (row, text) in rows.iter().enumerate() {
-                brush.text(room.x, room.y + lines + row as u16, room.width, text, style);
+                brush.text(room.x, room.y + lines + row as u16, room.width, text, TextRole::FalseBelief);
             }
             return;
         }
@@ -361,7 +356,7 @@ impl<'a> Place<'a> {
         // If the believed value does not fit, a short text says that there is a false belief; the belief panel has the
         // details.
         let words = [words.as_str(), FALSE_BELIEF].into_iter().find(|words| width(words) <= left).unwrap_or("");
-        brush.text(room.x + written, y, left, words, style);
+        brush.text(room.x + written, y, left, words, TextRole::FalseBelief);
     }
 
     /// Draws the robot's next press here and a recent change, below the content or at the end of its last line; returns
@@ -406,7 +401,7 @@ impl<'a> Place<'a> {
         let mut x = if lines < room.height { room.x } else { room.right().saturating_sub(needed) };
         for (text, role) in news {
             if x >= room.x + ends && x + width(&text) <= room.right() {
-                x = brush.parts(x, y, width(&text), &[(&text, role)]) + 1;
+                x = brush.text(x, y, width(&text), &text, role) + 1;
             }
         }
         has_news
@@ -449,7 +444,7 @@ pub(super) fn draw_buttons(brush: &mut Painter, room: Rect, buttons: &[(KeyChord
             false => (room.x + index * room.width / count, room.bottom() - 1, room.width / count),
         };
         let name = fit(name, columns.saturating_sub(3), brush.theme.signs().ellipsis);
-        let end = brush.text(x, y, columns, &format!("[{key}]{name}"), style);
+        let end = brush.styled(x, y, columns, &format!("[{key}]{name}"), style);
         brush.key_target(x, y, end, *key);
     }
 }

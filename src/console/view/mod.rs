@@ -69,7 +69,7 @@ fn draw(brush: &mut Painter, session: &Session, model: &ConsoleModel) {
     if regions.screen_size == regions::ScreenSize::Small && brush.focus.area() > 0 {
         // There are no frames on small terminals.
         let (focus, sign) = (brush.focus, brush.theme.signs().to);
-        brush.parts(focus.x, focus.y, 1, &[(sign, TextRole::Strong)]);
+        brush.text(focus.x, focus.y, 1, sign, TextRole::Strong);
     }
     footer::message(brush, &regions, session, model);
     cards::draw(brush, &regions, session, model);
@@ -81,15 +81,14 @@ fn draw(brush: &mut Painter, session: &Session, model: &ConsoleModel) {
 
 fn too_small(brush: &mut Painter, session: &Session, model: &ConsoleModel) {
     let area = *brush.buffer.area();
-    let (alarm, text) = (brush.style(TextRole::Alarm), brush.style(TextRole::Text));
     let need =
         format!("terminal {}x{} is too small: the console needs {}x{}", area.width, area.height, LEAST.0, LEAST.1);
-    brush.text(0, 0, area.width, &need, text);
+    brush.text(0, 0, area.width, &need, TextRole::Text);
     let stop = match session.robot.stopped {
         true => session.robot.safety_mode().name(),
         false => "the space bar stops the robot",
     };
-    brush.text(0, 1, area.width, stop, alarm);
+    brush.text(0, 1, area.width, stop, TextRole::Alarm);
     let question = match &model.dialog {
         Some(Dialog::Quit) => "Quit tomcom? y or the same key again: yes; any other key: no",
         Some(Dialog::EndTrial) => "End the trial? y or the same key again: yes; any other key: no",
@@ -109,8 +108,7 @@ fn too_small(brush: &mut Painter, session: &Session, model: &ConsoleModel) {
         Some(Dialog::Report(_)) => "The terminal is too small for the training report; enter continues",
         None => return,
     };
-    let strong = brush.style(TextRole::Strong);
     for (row, line) in wrap(question, area.width).iter().enumerate() {
-        brush.text(0, 2 + row as u16, area.width, line, strong);
+        brush.text(0, 2 + row as u16, area.width, line, TextRole::Strong);
     }
 }

@@ -185,18 +185,16 @@ pub fn draw_offer(
         brush.target(area, ClickAction::Key(chord));
     }
     let Some(offer) = shown(session, model) else {
-        let quiet = brush.style(TextRole::Quiet);
         let words = closed(session, model).unwrap_or_else(|| why_no_offer(session, model, believed));
-        brush.text(area.x + 1, area.y, area.width - 1, &words, quiet);
+        brush.text(area.x + 1, area.y, area.width - 1, &words, TextRole::Quiet);
         return;
     };
     let badge = brush.theme.badge(TextRole::Signal);
-    let end = brush.text(area.x, area.y, area.width, &offer.label(session, model), badge);
+    let end = brush.styled(area.x, area.y, area.width, &offer.label(session, model), badge);
     let saves = offer.saves(brush, session);
     let right = area.right().saturating_sub(1);
-    let strong = brush.style(TextRole::Strong);
     if end + width(&saves) < right {
-        brush.text_right(right, area.y, width(&saves), &saves, strong);
+        brush.text_right(right, area.y, width(&saves), &saves, TextRole::Strong);
     }
     // The reason stands in a line of its own, or between the label and the saving.
     let (mut x, y, limit) = match area.height {
@@ -208,8 +206,7 @@ pub fn draw_offer(
         let words = if brush.theme.unicode { words } else { words.replace('·', "-") };
         let role = if index == 0 { TextRole::FalseBelief } else { TextRole::Text };
         if index == 0 || x + width(&words) <= limit {
-            let style = brush.style(role);
-            x = brush.text(x, y, limit.saturating_sub(x), &words, style);
+            x = brush.text(x, y, limit.saturating_sub(x), &words, role);
         }
     }
 }
@@ -323,9 +320,8 @@ pub fn draw_signals(brush: &mut Painter, regions: &PanelAreas, session: &Session
 }
 
 fn quietly(brush: &mut Painter, area: Rect, text: &str) {
-    let quiet = brush.style(TextRole::Quiet);
     for (row, line) in wrap(text, area.width).iter().take(usize::from(area.height)).enumerate() {
-        brush.text(area.x, area.y + row as u16, area.width, line, quiet);
+        brush.text(area.x, area.y + row as u16, area.width, line, TextRole::Quiet);
     }
 }
 
@@ -374,7 +370,7 @@ fn option_line(
     let is_offered = offered == Some(&option.signal);
     let role = if is_offered { TextRole::Strong } else { TextRole::Quiet };
     let worth = worth(option, session);
-    let mut x = brush.parts(inside.x, y, inside.width, &[(worth.as_str(), role)]);
+    let mut x = brush.text(inside.x, y, inside.width, worth.as_str(), role);
     let (chord, words) = (key(option, session, model), wording::signal(&option.signal));
     let key = chord.map_or(String::new(), |chord| format!("[{}] ", chord.name()));
     // The words of a signal have priority over its benefit bar.
@@ -384,8 +380,7 @@ fn option_line(
     let parts = [(key.as_str(), TextRole::Signal), (words.as_str(), role)];
     let end = brush.parts(x, y, inside.right().saturating_sub(x), &parts);
     if is_offered && end + 2 + OFFERED.len() as u16 <= inside.right() {
-        let style = brush.style(TextRole::Signal);
-        brush.text_right(inside.right(), y, OFFERED.len() as u16, OFFERED, style);
+        brush.text_right(inside.right(), y, OFFERED.len() as u16, OFFERED, TextRole::Signal);
     }
     if let Some(chord) = chord.filter(|_| model.playback.is_none()) {
         brush.key_target(x, y, end, chord);
@@ -412,8 +407,7 @@ fn gauge(brush: &mut Painter, x: u16, y: u16, option: &SignalOption, session: &S
             () if at <= column(most) => (open, role),
             () => (" ", role),
         };
-        let style = brush.style(role);
-        brush.text(x + index, y, 1, sign, style);
+        brush.text(x + index, y, 1, sign, role);
     }
     x + GAUGE + 1
 }
@@ -440,12 +434,11 @@ fn cost_line(
     let name =
         session.external.names.get(&MindRole::Concept).map_or(String::new(), |name| format!("{}: ", printable(name)));
     let left = format!("{name}{left}");
-    let quiet = brush.style(TextRole::Quiet);
-    let end = brush.text(inside.x, y, inside.width, &left, quiet);
+    let end = brush.text(inside.x, y, inside.width, &left, TextRole::Quiet);
     // A recommendation that the assistant has already sent by itself is marked as sent.
     let is_sent = session.spec.trial.condition == Condition::Assistant
         && session.signalled_at.is_some_and(|sent| sent >= advice.for_ns);
     let age_s = session.age(advice.for_ns, model.now).as_secs_f64();
     let age = if is_sent { format!("sent, {age_s:.1} s old") } else { format!("{age_s:.1} s old") };
-    brush.text_right(inside.right(), y, inside.right().saturating_sub(end + 1), &age, quiet);
+    brush.text_right(inside.right(), y, inside.right().saturating_sub(end + 1), &age, TextRole::Quiet);
 }

@@ -35,9 +35,9 @@ impl Place<'_> {
             OrderContent::Dish(_) => self.content.clone(),
         };
         let (style, right) = (self.content_style(brush), cells.right());
-        let end = brush.text(x, cells.y, right.saturating_sub(x), &dish, style);
+        let end = brush.styled(x, cells.y, right.saturating_sub(x), &dish, style);
         if needs.is_some_and(|needs| needs.is_begun) {
-            brush.parts(x - 1, cells.y, 1, &[(brush.theme.signs().in_work, TextRole::Strong)]);
+            brush.text(x - 1, cells.y, 1, brush.theme.signs().in_work, TextRole::Strong);
         }
         if !matches!(self.session.state.order(self.id), OrderContent::Dish(_)) {
             return;
@@ -83,7 +83,7 @@ impl Place<'_> {
             let (words, sign) = self.unseen(brush);
             let marks = [format!("{}{words}", brush.theme.signs().changed), sign.to_string()];
             if let Some(mark) = marks.iter().find(|mark| end + width(mark) < right) {
-                brush.parts(end + 1, cells.y, width(mark), &[(mark, TextRole::Gaze)]);
+                brush.text(end + 1, cells.y, width(mark), mark, TextRole::Gaze);
             }
         }
         if is_tall {
@@ -91,11 +91,11 @@ impl Place<'_> {
             let now = needs.and_then(|needs| self.in_work(brush, needs)).map(|now| (now, TextRole::Text));
             // No step is left to be told while something is in work.
             if let Some((words, role)) = now.or(step.map(|(_, step)| (step, self.open_role()))) {
-                x = brush.parts(x, y, right.saturating_sub(x), &[(&words, role)]) + 2;
+                x = brush.text(x, y, right.saturating_sub(x), &words, role) + 2;
             }
             let left = right.saturating_sub(x);
             if let Some(thought) = thoughts.iter().find(|thought| width(thought) <= left) {
-                brush.parts(x, y, left, &[(thought, TextRole::FalseBelief)]);
+                brush.text(x, y, left, thought, TextRole::FalseBelief);
             }
         }
     }

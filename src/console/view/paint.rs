@@ -69,7 +69,12 @@ impl Painter<'_> {
     }
 
     /// Writes at most `columns` of a text and returns the column after it. Control characters are escaped.
-    pub fn text(&mut self, x: u16, y: u16, columns: u16, text: &str, style: Style) -> u16 {
+    pub fn text(&mut self, x: u16, y: u16, columns: u16, text: &str, role: TextRole) -> u16 {
+        self.styled(x, y, columns, text, self.style(role))
+    }
+
+    /// Writes a text as [`Painter::text`] does, in a style of its own.
+    pub fn styled(&mut self, x: u16, y: u16, columns: u16, text: &str, style: Style) -> u16 {
         let area = *self.buffer.area();
         if y < area.y || y >= area.bottom() || x < area.x || x >= area.right() {
             return x;
@@ -84,26 +89,23 @@ impl Painter<'_> {
     }
 
     /// Writes a text on the screen so that it ends before the column `right`.
-    pub fn text_right(&mut self, right: u16, y: u16, columns: u16, text: &str, style: Style) {
+    pub fn text_right(&mut self, right: u16, y: u16, columns: u16, text: &str, role: TextRole) {
         let text = fit(text, columns, self.theme.signs().ellipsis);
-        self.text(right.saturating_sub(width(&text)), y, columns, &text, style);
+        self.text(right.saturating_sub(width(&text)), y, columns, &text, role);
     }
 
     /// Writes text parts in their styles one after another, and returns the column after the last.
     pub fn parts(&mut self, x: u16, y: u16, columns: u16, parts: &[(&str, TextRole)]) -> u16 {
         let end = x + columns;
-        parts.iter().fold(x, |x, (text, role)| {
-            let style = self.style(*role);
-            self.text(x, y, end.saturating_sub(x), text, style)
-        })
+        parts.iter().fold(x, |x, (text, role)| self.text(x, y, end.saturating_sub(x), text, *role))
     }
 
-    /// Draws a frame with these six signs (four corners, horizontal line, vertical line).
-    pub fn frame(&mut self, area: Rect, signs: &[&str; 6], style: Style) {
+    pub fn frame(&mut self, area: Rect, role: TextRole) {
         if area.width < 2 || area.height < 2 {
             return;
         }
         let (right, bottom) = (area.right() - 1, area.bottom() - 1);
+        let (signs, style) = (self.theme.signs().frame, self.style(role));
         // A frame is most of a screen's texts: its signs have one column each and need no measuring.
         let mut put = |x, y, sign: &str| {
             if let Some(cell) = self.buffer.cell_mut((x, y)) {
@@ -131,15 +133,14 @@ impl Painter<'_> {
     /// Draws the frame of a panel with its title, and a remark in several styles at the right; returns the area inside.
     pub fn panel_with(&mut self, area: Rect, title: &str, remark: &[(&str, TextRole)]) -> Rect {
         let has_focus = area.area() > 0 && area == self.focus;
-        let line = self.style(if has_focus { TextRole::Strong } else { TextRole::Frame });
-        self.frame(area, &self.theme.signs().frame, line);
+        let line = if has_focus { TextRole::Strong } else { TextRole::Frame };
+        self.frame(area, line);
         let title = match has_focus {
             true => format!(" {} {title} ", self.theme.signs().to),
             false => format!(" {title} "),
         };
         let room = area.width.saturating_sub(4);
-        let strong = self.style(TextRole::Strong);
-        self.text(area.x + 1, area.y, room, &title, strong);
+        self.text(area.x + 1, area.y, room, &title, TextRole::Strong);
         let columns: u16 = remark.iter().map(|(text, _)| width(text)).sum();
         if columns > 0 && width(&title) + columns <= room {
             let begins = area.right() - 3 - columns;
@@ -153,9 +154,8 @@ impl Painter<'_> {
     pub fn bar(&mut self, x: u16, y: u16, columns: u16, share: f64, role: TextRole) -> u16 {
         let signs = self.theme.signs();
         let filled = (share.clamp(0.0, 1.0) * f64::from(columns)).round() as u16;
-        let (full, quiet) = (self.style(role), self.style(TextRole::Frame));
-        let x = self.text(x, y, filled, &signs.bar_full.repeat(usize::from(filled)), full);
+        let x = self.text(x, y, filled, &signs.bar_full.repeat(usize::from(filled)), role);
         let rest = columns - filled;
-        self.text(x, y, rest, &signs.bar_empty.repeat(usize::from(rest)), quiet)
+        self.text(x, y, rest, &signs.bar_empty.repeat(usize::from(rest)), TextRole::Frame)
     }
 }

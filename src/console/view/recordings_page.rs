@@ -49,9 +49,8 @@ fn draw(brush: &mut Painter, picker: &RecordingPicker) {
     let left = picker.left();
     let typed = format!("{}_", picker.cursor.filter);
     brush.parts(x, inside.y, columns, &[("type to filter: ", TextRole::Quiet), (&typed, TextRole::Strong)]);
-    let quiet = brush.style(TextRole::Quiet);
     let found = picker.reading.map_or(format!("{} of {}", left.len(), picker.rows.len()), |_| String::new());
-    brush.text_right(x + columns, inside.y, 16, &found, quiet);
+    brush.text_right(x + columns, inside.y, 16, &found, TextRole::Quiet);
     let headings = Rect { x: x + 2, y: inside.y + 2, width: columns.saturating_sub(2), height: 1 };
     shown.row(brush, headings, &picker.headings, TextRole::Quiet);
     let list = Rect { x, y: inside.y + 3, width: columns, height: inside.height.saturating_sub(5) };
@@ -61,7 +60,7 @@ fn draw(brush: &mut Painter, picker: &RecordingPicker) {
     for (line, &index) in left.iter().skip(first).take(rows).enumerate() {
         let (y, is_at) = (list.y + line as u16, first + line == picker.cursor.at);
         let role = if is_at { TextRole::Strong } else { TextRole::Text };
-        brush.parts(list.x, y, 2, &[(if is_at { cursor } else { " " }, TextRole::Signal)]);
+        brush.text(list.x, y, 2, if is_at { cursor } else { " " }, TextRole::Signal);
         let cells = Rect { x: list.x + 2, y, width: list.width.saturating_sub(2), height: 1 };
         shown.row(brush, cells, &picker.rows[index], role);
         brush.target(Rect { y, height: 1, ..list }, ClickAction::Row(first + line));
@@ -71,7 +70,7 @@ fn draw(brush: &mut Painter, picker: &RecordingPicker) {
             Some(number) => format!("reading {}", count(number as u64, "recording", "recordings")),
             None => "no recording matches; bksp deletes a letter".to_string(),
         };
-        brush.text(list.x, list.y, list.width, &words, quiet);
+        brush.text(list.x, list.y, list.width, &words, TextRole::Quiet);
     }
     let [enter, esc] = [KeyCode::Enter, KeyCode::Esc].map(|code| Some(KeyChord::plain(code)));
     let hints = [("up/down", "select", None), ("enter", picker.does, enter), ("esc", "back", esc)];
@@ -124,13 +123,13 @@ impl ShownColumns {
     }
 
     fn row(&self, brush: &mut Painter, area: Rect, cells: &[String], role: TextRole) {
-        let (style, ellipsis) = (brush.style(role), brush.theme.signs().ellipsis);
+        let ellipsis = brush.theme.signs().ellipsis;
         let mut x = area.x;
         for (column, width) in &self.widths {
             let room = (*width).min(area.right().saturating_sub(x));
             if let Some(cell) = cells.get(*column) {
                 let cut = if *column == self.cut_in_front { fit_end(cell, room, ellipsis) } else { cell.clone() };
-                brush.text(x, area.y, room, &cut, style);
+                brush.text(x, area.y, room, &cut, role);
             }
             x += width + GAP;
         }

@@ -18,9 +18,10 @@ pub const LEAST: (u16, u16) = (72, 22);
 pub const ROOMY_COLUMNS: u16 = 112;
 
 /// Size class of the terminal: small, medium or large.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ScreenSize {
     /// Small terminal (80x24): panels shrink to lines.
+    #[default]
     Small,
     /// Medium terminal (120x40): panels with frames; the list of events only in place of beliefs that the wizard may not
     /// see.
@@ -30,7 +31,7 @@ pub enum ScreenSize {
 }
 
 /// Screen areas of the console's panels; a panel with an empty area is not drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PanelAreas {
     pub screen_size: ScreenSize,
     pub head: Rect,
@@ -176,7 +177,6 @@ impl PanelAreas {
         let (rest, footer) = bottom(rest, 1);
         let (rest, message) = bottom(rest, lines.messages.min(size.1 / ROWS_PER_MESSAGE_LINE).max(1));
         let (rest, scrub) = bottom(rest, u16::from(lines.scrubs));
-        let blank = Rect::default();
         let (rest, codebook, errors) = match lines.codebook {
             Some([rows, ..]) if alone.is_some() || screen_size == ScreenSize::Small => {
                 let few = size.1 < FEW_ERROR_LINES.0;
@@ -189,29 +189,8 @@ impl PanelAreas {
         let rows =
             lines.comparison.filter(|_| alone.is_none()).map_or(0, |number| comparison_rows(screen_size, number));
         let (rest, comparison) = bottom(rest, rows);
-        let bare = PanelAreas {
-            screen_size,
-            head,
-            offer,
-            orders: blank,
-            kitchen: rest,
-            belief: blank,
-            presses: blank,
-            recommendation: blank,
-            gaze_map: blank,
-            shown: blank,
-            robot: blank,
-            gaze: blank,
-            events: blank,
-            timeline: blank,
-            comparison,
-            lesson: blank,
-            codebook,
-            errors,
-            scrub,
-            message,
-            footer,
-        };
+        let bare = PanelAreas { screen_size, head, offer, kitchen: rest, comparison, ..PanelAreas::default() };
+        let bare = PanelAreas { codebook, errors, scrub, message, footer, ..bare };
         let regions = match screen_size {
             _ if let Some(panel) = alone => return bare.alone(panel, lines),
             ScreenSize::Small => bare.small(visibility, lines),
@@ -243,35 +222,32 @@ impl PanelAreas {
     }
 
     fn alone(self, panel: Panel, lines: LineRows) -> PanelAreas {
-        let blank = Rect::default();
         let body = self.kitchen;
-        let mut regions = PanelAreas { kitchen: blank, screen_size: self.screen_size.max(ScreenSize::Medium), ..self };
+        let mut regions =
+            PanelAreas { kitchen: Rect::default(), screen_size: self.screen_size.max(ScreenSize::Medium), ..self };
         match panel {
             // The kitchen map has the orders above it, as the wall display has.
             Panel::Kitchen => (regions.orders, regions.kitchen) = top(body, 2 * lines.orders + FRAME),
-            Panel::Orders => regions.orders = body,
-            Panel::Belief => regions.belief = body,
-            Panel::Presses => regions.presses = body,
-            Panel::Recommendation => regions.recommendation = body,
-            Panel::GazeMap => regions.gaze_map = body,
-            Panel::Events => regions.events = body,
-            Panel::Timeline => regions.timeline = body,
-            Panel::Comparison => regions.comparison = body,
+            panel => *regions.area_of(panel) = body,
         }
         regions
     }
 
-    pub fn panel_area(&self, panel: Panel) -> Rect {
+    pub fn panel_area(mut self, panel: Panel) -> Rect {
+        *self.area_of(panel)
+    }
+
+    fn area_of(&mut self, panel: Panel) -> &mut Rect {
         match panel {
-            Panel::Kitchen => self.kitchen,
-            Panel::Orders => self.orders,
-            Panel::Belief => self.belief,
-            Panel::Presses => self.presses,
-            Panel::Recommendation => self.recommendation,
-            Panel::GazeMap => self.gaze_map,
-            Panel::Events => self.events,
-            Panel::Timeline => self.timeline,
-            Panel::Comparison => self.comparison,
+            Panel::Kitchen => &mut self.kitchen,
+            Panel::Orders => &mut self.orders,
+            Panel::Belief => &mut self.belief,
+            Panel::Presses => &mut self.presses,
+            Panel::Recommendation => &mut self.recommendation,
+            Panel::GazeMap => &mut self.gaze_map,
+            Panel::Events => &mut self.events,
+            Panel::Timeline => &mut self.timeline,
+            Panel::Comparison => &mut self.comparison,
         }
     }
 
@@ -439,17 +415,10 @@ pub(in crate::console) fn top(area: Rect, rows: u16) -> (Rect, Rect) {
 }
 
 fn bottom(area: Rect, rows: u16) -> (Rect, Rect) {
-    let (rest, bottom) = top(area, area.height.saturating_sub(rows));
-    (rest, bottom)
+    top(area, area.height.saturating_sub(rows))
 }
 
 fn left(area: Rect, columns: u16) -> (Rect, Rect) {
-    let (left, right) = right(area, area.width.saturating_sub(columns));
-    (left, right)
-}
-
-fn right(area: Rect, columns: u16) -> (Rect, Rect) {
     let columns = columns.min(area.width);
-    let rest = area.width - columns;
-    (Rect { width: rest, ..area }, Rect { x: area.x + rest, width: columns, ..area })
+    (Rect { width: columns, ..area }, Rect { x: area.x + columns, width: area.width - columns, ..area })
 }

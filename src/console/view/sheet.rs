@@ -427,10 +427,9 @@ impl Page {
         let shown = (0..self.heads).chain(self.heads + from..self.lines.len()).take(room);
         for (row, index) in shown.enumerate() {
             let (line, x, y) = (&self.lines[index], inside.x + 1, inside.y + 1 + row as u16);
-            let end = line.iter().fold(x, |_, (indent, text, role)| {
-                let style = brush.style(*role);
-                brush.text(x + indent, y, self.columns - indent, text, style)
-            });
+            let end = line
+                .iter()
+                .fold(x, |_, (indent, text, role)| brush.text(x + indent, y, self.columns - indent, text, *role));
             let key = self.keys.iter().find(|(line, _)| *line == index);
             if let Some((_, chord)) = key.filter(|_| pen.with_keys) {
                 brush.key_target(x, y, end, *chord);

@@ -29,13 +29,13 @@ pub fn draw_robot(brush: &mut Painter, regions: &PanelAreas, session: &Session, 
         return;
     }
     if regions.screen_size == ScreenSize::Small {
-        brush.parts(area.x, area.y, area.width, &[(" robot    ", TextRole::Quiet)]);
+        brush.text(area.x, area.y, area.width, " robot    ", TextRole::Quiet);
         let (mut columns, mode) = (area.width.saturating_sub(11), session.robot.arm.mode);
         // All modes stand in the head line; where there is room, this one says why.
         if mode == SafetyMode::Reduced && !session.robot.stopped && columns >= 44 {
             let name = format!(" {}", mode_words(mode));
             columns = columns.saturating_sub(width(&name));
-            brush.parts(area.x + 10 + columns, area.y, width(&name), &[(&name, mode_role(mode))]);
+            brush.text(area.x + 10 + columns, area.y, width(&name), &name, mode_role(mode));
         }
         robot_line(brush, Rect { x: area.x + 10, width: columns, ..area }, session, model);
         return;
@@ -72,20 +72,19 @@ fn holds(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session) {
     };
     let presses = count(u64::from(session.presses[Agent::Robot.index()]), "press made", "presses made");
     brush.parts(x, y, columns, &[("holds ", TextRole::Quiet), (held, TextRole::Text)]);
-    let quiet = brush.style(TextRole::Quiet);
-    brush.text_right(x + columns, y, columns / 2, &presses, quiet);
+    brush.text_right(x + columns, y, columns / 2, &presses, TextRole::Quiet);
 }
 
 /// Draws what the arm does, how far the hand is from it, and the force. While the arm stands no samples come: the last one
 /// then tells nothing of the present.
 fn arm(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, now: SessionTime) {
     if session.robot.stopped {
-        brush.parts(x, y, columns, &[(&stop_reason(session), TextRole::Alarm)]);
+        brush.text(x, y, columns, &stop_reason(session), TextRole::Alarm);
         return;
     }
     let Some((at, sample)) = session.robot.arm.last else { return };
     if !session.is_running() || session.age(at, now).as_secs_f64() > FRESH_S {
-        brush.parts(x, y, columns, &[("stands", TextRole::Text)]);
+        brush.text(x, y, columns, "stands", TextRole::Text);
         return;
     }
     let waits = session.robot.arm.mode == SafetyMode::Safeguard;
@@ -131,9 +130,8 @@ fn stopped(brush: &mut Painter, line: Rect, session: &Session, model: &ConsoleMo
     };
     let key = model.keys.chord_for(&KeyAction::ResumeRobot).filter(|_| session.phase != TrialPhase::Closed);
     let resume = key.map(|key| format!(" {key} resume")).unwrap_or_default();
-    let badge = brush.theme.badge(TextRole::Alarm);
-    let end = brush.text(line.x, line.y, line.width, &label, badge);
-    brush.parts(end, line.y, line.right().saturating_sub(end), &[(&resume, TextRole::Text)]);
+    let end = brush.styled(line.x, line.y, line.width, &label, brush.theme.badge(TextRole::Alarm));
+    brush.text(end, line.y, line.right().saturating_sub(end), &resume, TextRole::Text);
 }
 
 /// A safety mode in words; the modes in which the arm stands keep their names.
@@ -166,7 +164,7 @@ fn robot_line(brush: &mut Painter, area: Rect, session: &Session, model: &Consol
     }
     let (x, columns) = if session.robot.held { held(brush, x, y, columns, model) } else { (x, columns) };
     if matches!(session.phase, TrialPhase::Over(_) | TrialPhase::Closed) {
-        brush.parts(x, y, columns, &[("stopped: the trial is over", TextRole::Quiet)]);
+        brush.text(x, y, columns, "stopped: the trial is over", TextRole::Quiet);
         return 1;
     }
     let Some((button, since, until)) = session.robot.intention else {
@@ -186,7 +184,7 @@ fn robot_line(brush: &mut Painter, area: Rect, session: &Session, model: &Consol
             None => vec![least.clone()],
         };
         for (row, words) in rows.iter().enumerate() {
-            brush.parts(x, y + row as u16, columns, &[(words, TextRole::Quiet)]);
+            brush.text(x, y + row as u16, columns, words, TextRole::Quiet);
         }
         return rows.len() as u16;
     };
@@ -231,27 +229,23 @@ fn robot_line(brush: &mut Painter, area: Rect, session: &Session, model: &Consol
     let bar = 8.min(columns / 4).min(columns.saturating_sub(width(&label) + width(by) + 7));
     brush.parts(x, y, columns.saturating_sub(bar + 7), &[(&label, TextRole::Robot), (by, TextRole::Signal)]);
     let at = brush.bar(x + columns - bar - 6, y, bar, 1.0 - left_s / whole_s, TextRole::Robot);
-    brush.parts(at, y, 6, &[(&left, TextRole::Text)]);
+    brush.text(at, y, 6, &left, TextRole::Text);
     1
 }
 
 fn release(model: &ConsoleModel) -> String {
-    model
-        .keys
-        .chord_for(&KeyAction::Manual(ManualAction::HoldRobot))
-        .map(|key| format!("{key} releases the robot"))
-        .unwrap_or_default()
+    let key = model.keys.chord_for(&KeyAction::Manual(ManualAction::HoldRobot));
+    key.map(|key| format!("{key} releases the robot")).unwrap_or_default()
 }
 
 /// Draws that the wizard holds the robot before its next press; returns the next column and the remaining width.
 fn held(brush: &mut Painter, x: u16, y: u16, columns: u16, model: &ConsoleModel) -> (u16, u16) {
-    let badge = brush.theme.badge(TextRole::Strong);
-    let end = brush.text(x, y, columns, " HELD ", badge);
+    let end = brush.styled(x, y, columns, " HELD ", brush.theme.badge(TextRole::Strong));
     let left = (x + columns).saturating_sub(end);
     let ways = [format!(" {} ", release(model)), format!(" {} ", release(model).replace(" the robot", ""))];
     let fitting = ways.into_iter().zip([50, 30]).find(|(_, least)| left > *least);
     let words = fitting.map_or(" ".to_string(), |(words, _)| words);
-    let end = brush.parts(end, y, left, &[(&words, TextRole::Quiet)]);
+    let end = brush.text(end, y, left, &words, TextRole::Quiet);
     (end, (x + columns).saturating_sub(end))
 }
 
@@ -262,7 +256,7 @@ pub fn draw_display(brush: &mut Painter, regions: &PanelAreas, session: &Session
         return;
     }
     if regions.screen_size == ScreenSize::Small {
-        brush.parts(area.x, area.y, area.width, &[(" display  ", TextRole::Quiet)]);
+        brush.text(area.x, area.y, area.width, " display  ", TextRole::Quiet);
         display_line(brush, area.x + 10, area.y, area.width.saturating_sub(11), session, model);
         return;
     }
@@ -272,9 +266,8 @@ pub fn draw_display(brush: &mut Painter, regions: &PanelAreas, session: &Session
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     display_line(brush, x, inside.y, columns, session, model);
     if let Some(shown) = &session.shown {
-        let style = brush.style(TextRole::Text);
         for (row, text) in wrap(&says(session, &shown.signal), columns).iter().take(2).enumerate() {
-            brush.text(x, inside.y + 1 + row as u16, columns, text, style);
+            brush.text(x, inside.y + 1 + row as u16, columns, text, TextRole::Text);
         }
     }
 }
@@ -282,7 +275,7 @@ pub fn draw_display(brush: &mut Painter, regions: &PanelAreas, session: &Session
 /// Draws the present signal with its remaining time in one line.
 fn display_line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
     if session.calibration.as_ref().is_some_and(|check| check.shown.is_some()) {
-        brush.parts(x, y, columns, &[("a target of the gaze check", TextRole::Strong)]);
+        brush.text(x, y, columns, "a target of the gaze check", TextRole::Strong);
         return;
     }
     let start = model.keys.chord_for(&KeyAction::Advance).filter(|_| session.phase == TrialPhase::Ready);
@@ -293,7 +286,7 @@ fn display_line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Ses
         return;
     }
     let Some(shown) = &session.shown else {
-        brush.parts(x, y, columns, &[("no signal, only the kitchen", TextRole::Quiet)]);
+        brush.text(x, y, columns, "no signal, only the kitchen", TextRole::Quiet);
         return;
     };
     let title = match (&shown.signal, columns > 60) {
@@ -303,13 +296,13 @@ fn display_line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Ses
     let (left_s, share) = time_left(session, shown, model);
     let bar = if columns < 44 { 0 } else { 8 };
     let room = columns.saturating_sub(bar + 7);
-    let end = brush.parts(x, y, room, &[(&title, TextRole::Signal)]);
+    let end = brush.text(x, y, room, &title, TextRole::Signal);
     let by = format!(" by {}", wording::sender(shown.by));
     if end + width(&by) <= x + room {
-        brush.parts(end, y, room, &[(&by, TextRole::Quiet)]);
+        brush.text(end, y, room, &by, TextRole::Quiet);
     }
     let at = brush.bar(x + columns - bar - 6, y, bar, share, TextRole::Signal);
-    brush.parts(at, y, 6, &[(&format!(" {left_s:>3.1} s"), TextRole::Text)]);
+    brush.text(at, y, 6, &format!(" {left_s:>3.1} s"), TextRole::Text);
 }
 
 /// Remaining time of a signal in seconds, and as a share of its duration.
@@ -360,11 +353,9 @@ pub fn draw_training(brush: &mut Painter, regions: &PanelAreas, model: &ConsoleM
                 return;
             }
             if row == 0 {
-                let quiet = brush.style(TextRole::Quiet);
-                brush.text(x, y, indent, &clock, quiet);
+                brush.text(x, y, indent, &clock, TextRole::Quiet);
             }
-            let style = brush.style(role);
-            brush.text(x + indent, y, columns.saturating_sub(indent), line, style);
+            brush.text(x + indent, y, columns.saturating_sub(indent), line, role);
             y += 1;
         }
     }

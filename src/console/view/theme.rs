@@ -21,14 +21,15 @@ pub enum TextRole {
 }
 
 /// Brightness of the terminal's background.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TerminalBackground {
+    #[default]
     Dark,
     Light,
 }
 
 /// Theme of the console: its colours and signs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Theme {
     /// Whether colours are used; without colours, weight and signs tell the same.
     pub colour: bool,

@@ -46,15 +46,13 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
         false if has_offers(inside, session, model) => &["", "human", "robot", "signals", "orders", "notes", "offers"],
         false => &["", "human", "robot", "signals", "orders", "notes"],
     };
-    let quiet = brush.style(TextRole::Quiet);
     for (row, label) in rows.iter().enumerate().take(usize::from(inside.height)) {
-        brush.text(inside.x + 1, inside.y + row as u16, LABELS, label, quiet);
+        brush.text(inside.x + 1, inside.y + row as u16, LABELS, label, TextRole::Quiet);
     }
     let plot = Rect { x: inside.x + LABELS, width: inside.width.saturating_sub(LABELS + 1), ..inside };
     axis(brush, plot, session, model, COLUMN_S);
-    let back = (f64::from(model.timeline_back_s) / COLUMN_S) as i64;
     let newest = session.timeline.iter().rev().filter(|entry| entry.time <= model.now);
-    let entries = newest.map(|entry| (columns_ago(session, model, entry.time, COLUMN_S) - back, entry));
+    let entries = newest.map(|entry| (columns_ago(session, model, entry.time, COLUMN_S), entry));
     let row_of = |row: u16| match is_small {
         true => row.min(3),
         false if model.coding.is_some() && row > 3 => row - 1,
@@ -78,8 +76,9 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     }
     if model.playback.is_some() && model.lesson.is_none() {
         for x in plot.x..plot.right() {
-            let ago = i64::from(plot.right() - 1 - x) + back;
-            brush.target(Rect { x, width: 1, ..plot }, ClickAction::Seek(column_end(session, model, ago)));
+            let ago = i64::from(plot.right() - 1 - x);
+            let to = ReplayAction::ToTime(column_end(session, model, ago));
+            brush.target(Rect { x, width: 1, ..plot }, ClickAction::Seek(to));
         }
     }
 }
@@ -96,11 +95,7 @@ const MISSED: &str = "missed";
 /// Draws each offer from its opening to its close: the key of its signal, then a line, in the colour of signals if the
 /// signal was sent, and a tick where the wizard accepted the offer; after an offer that was not used, that it was missed.
 fn offers(brush: &mut Painter, row: Rect, session: &Session, model: &ConsoleModel) {
-    let back = (f64::from(model.timeline_back_s) / COLUMN_S) as i64;
-    let column = |time: SessionTime| {
-        let ago = columns_ago(session, model, time, COLUMN_S) - back;
-        i64::from(row.right()) - 1 - ago
-    };
+    let column = |time| i64::from(row.right()) - 1 - columns_ago(session, model, time, COLUMN_S);
     let closed = session.offers.closed().iter().map(|closed| (&closed.offer, closed.closed, true));
     let open = session.offers.unclosed().map(|offer| (offer, model.now, false));
     let signs = brush.theme.signs();
@@ -113,7 +108,6 @@ fn offers(brush: &mut Painter, row: Rect, session: &Session, model: &ConsoleMode
         }
         let used = offer.used.filter(|used| used.at <= model.now);
         let role = if used.is_some() { TextRole::Signal } else { TextRole::Quiet };
-        let style = brush.style(role);
         let key = offer.signal().map_or("!".to_string(), |signal| signal_sign(session, model, signal));
         let is_taken = used.is_some_and(|used| used.how == OfferKeyKind::Taken);
         for at in from.max(row.x.into())..=to.min(i64::from(row.right()) - 1) {
@@ -122,7 +116,7 @@ fn offers(brush: &mut Painter, row: Rect, session: &Session, model: &ConsoleMode
                 at if at == to && is_taken => signs.served,
                 _ => signs.frame[4],
             };
-            brush.text(at as u16, row.y, 1, sign, style);
+            brush.text(at as u16, row.y, 1, sign, role);
         }
         // While the key still takes a closed offer, the offer is not missed. A part of the word would be read as a key.
         let is_missed = is_closed && used.is_none() && session.age(end, model.now) > TAKEN_AFTER;
@@ -130,7 +124,7 @@ fn offers(brush: &mut Painter, row: Rect, session: &Session, model: &ConsoleMode
         let after = (to + 2).min(i64::from(row.right().saturating_sub(width(MISSED))));
         let next = seen.peek().map_or(row.right().into(), |(next, ..)| column(next.opened));
         if is_missed && after >= i64::from(row.x) && after + i64::from(width(MISSED)) <= next {
-            brush.text(after as u16, row.y, row.right() - after as u16, MISSED, style);
+            brush.text(after as u16, row.y, row.right() - after as u16, MISSED, role);
         }
     }
 }
@@ -138,12 +132,10 @@ fn offers(brush: &mut Painter, row: Rect, session: &Session, model: &ConsoleMode
 /// Draws each loss of gaze between the notes, as far as they leave room: an alarm, then, where no signals share the row
 /// (`has_line`), a line as long as it lasts.
 fn gaze_losses(brush: &mut Painter, row: Rect, session: &Session, model: &ConsoleModel, has_line: bool) {
-    let back = (f64::from(model.timeline_back_s) / COLUMN_S) as i64;
-    let column = |time| i64::from(row.right()) - 1 - (columns_ago(session, model, time, COLUMN_S) - back);
+    let column = |time| i64::from(row.right()) - 1 - columns_ago(session, model, time, COLUMN_S);
     let is_in_trial = matches!(session.phase, TrialPhase::Running | TrialPhase::Paused);
     let present = GazeLoss::now(session, model.now).filter(|_| is_in_trial);
     let present = present.map(|loss| [loss.since.unwrap_or_default().max(session.trial_start), model.now]);
-    let style = brush.style(TextRole::Alarm);
     for [since, until] in session.gaze.losses.iter().copied().chain(present) {
         let (from, to) = (column(since), column(until));
         let mut sign = if from < i64::from(row.x) { brush.theme.signs().frame[4] } else { "!" };
@@ -151,23 +143,24 @@ fn gaze_losses(brush: &mut Painter, row: Rect, session: &Session, model: &Consol
             let cell = (at as u16, row.y);
             let is_free = row.contains(cell.into()) && brush.buffer.cell(cell).is_some_and(|cell| cell.symbol() == " ");
             if is_free && (has_line || sign == "!") {
-                brush.text(at as u16, row.y, 1, sign, style);
+                brush.text(at as u16, row.y, 1, sign, TextRole::Alarm);
                 sign = brush.theme.signs().frame[4];
             }
         }
     }
 }
 
-/// Number of timeline columns between a session time and the present, on the trial's clock.
+/// Number of timeline columns between a session time and the right end, the present or an earlier time, on the trial's clock.
 pub(super) fn columns_ago(session: &Session, model: &ConsoleModel, time: SessionTime, column_s: f64) -> i64 {
     let column = |time: SessionTime| (time.as_secs_f64() / column_s) as i64;
     let now = session.trial_clock(model.now);
-    column(now) - column(now - session.age(time, model.now))
+    let back = (f64::from(model.timeline_back_s) / column_s) as i64;
+    column(now) - column(now - session.age(time, model.now)) - back
 }
 
-/// Session time at the end of the column that is `ago` columns before the present.
+/// Session time at the end of the column that is `ago` columns before the right end.
 fn column_end(session: &Session, model: &ConsoleModel, ago: i64) -> SessionTime {
-    // Binary search: the number of columns before the present falls as the session time rises.
+    // Binary search: the number of columns before the right end falls as the session time rises.
     let (mut from, mut until) = (session.trial_start.0, model.now.0);
     while from < until {
         let middle = until - (until - from) / 2;
@@ -205,10 +198,10 @@ fn place(brush: &mut Painter, plot: Rect, marks: &[Mark]) {
             let style = if is_error { brush.theme.badge(mark.role) } else { brush.style(mark.role) };
             match free {
                 Some(x) if wanted == 0 || x == mark.x => {
-                    brush.text(x, mark.y, 1, &mark.sign, style);
+                    brush.styled(x, mark.y, 1, &mark.sign, style);
                 }
                 None if wanted == 0 => {
-                    brush.text(plot.x, mark.y, 1, "+", style);
+                    brush.styled(plot.x, mark.y, 1, "+", style);
                 }
                 _ => {}
             }
@@ -229,10 +222,8 @@ pub(super) fn axis(brush: &mut Painter, plot: Rect, session: &Session, model: &C
 
 /// Draws a time axis in full tens of seconds of the trial's clock; `end` is the time at its right end.
 pub(super) fn ticks(brush: &mut Painter, line: Rect, end: SessionTime, column_s: f64) {
-    let quiet = brush.style(TextRole::Quiet);
-    let thin = brush.style(TextRole::Frame);
     let rule = brush.theme.signs().frame[4].repeat(usize::from(line.width));
-    brush.text(line.x, line.y, line.width, &rule, thin);
+    brush.text(line.x, line.y, line.width, &rule, TextRole::Frame);
     let column = |seconds: f64| (seconds / column_s) as i64;
     let last = column(end.as_secs_f64());
     let is_wide = |step_s: &f64| step_s / column_s >= LABEL_COLUMNS;
@@ -246,7 +237,7 @@ pub(super) fn ticks(brush: &mut Painter, line: Rect, end: SessionTime, column_s:
             return;
         }
         let x = (x as u16).min(line.right().saturating_sub(width(&label)));
-        brush.text(x, line.y, width(&label), &label, quiet);
+        brush.text(x, line.y, width(&label), &label, TextRole::Quiet);
         tick -= 1.0;
     }
 }
@@ -303,7 +294,7 @@ fn mark(
 }
 
 /// The key of the signal, as shown in the kitchen panel.
-fn signal_sign(session: &Session, model: &ConsoleModel, signal: &Signal) -> String {
+pub(super) fn signal_sign(session: &Session, model: &ConsoleModel, signal: &Signal) -> String {
     let location = signal.location(&session.kitchen);
     location.and_then(|id| model.keys.mark(id)).map_or("!".to_string(), |chord| chord.to_string())
 }
@@ -327,20 +318,19 @@ pub fn draw_position(brush: &mut Painter, regions: &PanelAreas, session: &Sessio
     };
     let times = format!("{clock} of {} ", playback.trial_length.max(clock));
     let end = format!("{part}{times}");
-    let quiet = brush.style(TextRole::Quiet);
-    brush.text(area.x, area.y, area.width, " recording ", quiet);
-    brush.text_right(area.right(), area.y, area.width, &end, quiet);
+    brush.text(area.x, area.y, area.width, " recording ", TextRole::Quiet);
+    brush.text_right(area.right(), area.y, area.width, &end, TextRole::Quiet);
     let x = area.x + 11;
     // The bar has one length in all phases, so that a place on it always means the same time.
     let columns = area.right().saturating_sub(x + width(BEFORE) + width(&times) + 1);
-    let share = session.time.as_secs_f64() / playback.length.as_secs_f64().max(1e-3);
+    let all_s = playback.trial_length.max(clock).as_secs_f64().max(1e-3);
+    let share = clock.as_secs_f64() / all_s;
     let line = brush.theme.signs().frame[4].repeat(usize::from(columns));
-    let (thin, strong) = (brush.style(TextRole::Frame), brush.style(TextRole::Strong));
-    brush.text(x, area.y, columns, &line, thin);
+    brush.text(x, area.y, columns, &line, TextRole::Frame);
     let here = (share.clamp(0.0, 1.0) * f64::from(columns.saturating_sub(1))) as u16;
-    brush.text(x, area.y, here, &brush.theme.signs().frame[4].repeat(usize::from(here)), strong);
+    brush.text(x, area.y, here, &brush.theme.signs().frame[4].repeat(usize::from(here)), TextRole::Strong);
     for (time, what) in playback.marks.iter() {
-        let share = time.as_secs_f64() / playback.length.as_secs_f64().max(1e-3);
+        let share = time.as_secs_f64() / all_s;
         let at = (share.clamp(0.0, 1.0) * f64::from(columns.saturating_sub(1))) as u16;
         let role = match what {
             ReplayLandmark::Signal => TextRole::Signal,
@@ -351,18 +341,15 @@ pub fn draw_position(brush: &mut Painter, regions: &PanelAreas, session: &Sessio
         // The mark is the key that goes there.
         let key = model.keys.chord_for(&KeyAction::Move(ReplayAction::On(*what)));
         let key = key.map_or(brush.theme.signs().error.to_string(), |key| key.to_string());
-        let style = brush.style(role);
-        brush.text(x + at, area.y, 1, &key, style);
+        brush.text(x + at, area.y, 1, &key, role);
     }
-    let sign = brush.theme.signs().recording;
-    brush.text(x + here, area.y, 1, sign, strong);
+    brush.text(x + here, area.y, 1, brush.theme.signs().recording, TextRole::Strong);
     if model.lesson.is_some() {
         return;
     }
-    let length_s = playback.length.max(session.time).as_secs_f64();
     for column in 0..columns {
         let share = f64::from(column) / f64::from(columns.saturating_sub(1).max(1));
-        let time = SessionTime::from_secs_f64(length_s * share);
-        brush.target(Rect { x: x + column, width: 1, ..area }, ClickAction::Seek(time));
+        let to = ReplayAction::ToClock(SessionTime::from_secs_f64(playback.trial_length.as_secs_f64() * share));
+        brush.target(Rect { x: x + column, width: 1, ..area }, ClickAction::Seek(to));
     }
 }

@@ -41,10 +41,12 @@ pub fn percent(share: Option<f64>) -> String {
 /// Largest number of wrong letters in a mistyped name for which another is suggested.
 const MOST_EDITS: usize = 2;
 
-/// The name that is nearest to a mistyped one; at least half of the letters must be right. `None` if no name is near.
+/// The name that is nearest to a mistyped one, whose capital letters do not matter; at least half of the letters must be
+/// right. `None` if no name is near.
 pub fn nearest<Name: AsRef<str>>(mistyped: &str, names: impl IntoIterator<Item = Name>) -> Option<Name> {
     let most = MOST_EDITS.min(mistyped.chars().count() / 2);
-    let edits = |name: Name| (strsim::osa_distance(mistyped, name.as_ref()), name);
+    let mistyped = mistyped.to_lowercase();
+    let edits = |name: Name| (strsim::osa_distance(&mistyped, &name.as_ref().to_lowercase()), name);
     let near = names.into_iter().map(edits).filter(|(edits, _)| *edits <= most);
     near.min_by(|a, b| (a.0, a.1.as_ref()).cmp(&(b.0, b.1.as_ref()))).map(|(_, name)| name)
 }

@@ -142,7 +142,7 @@ impl ConceptName {
     /// The concepts that are part of the program, so that their names alone choose them.
     pub const OWN: [ConceptName; 4] = [ConceptName::TomCom, ConceptName::Tom, ConceptName::Dev, ConceptName::None];
 
-    /// The table of concepts.
+    /// The concept's names, what it sends, and the unit of its benefits.
     pub const fn entry(self) -> ConceptEntry {
         match self {
             ConceptName::TomCom => ConceptEntry {

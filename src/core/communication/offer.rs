@@ -134,17 +134,7 @@ pub enum OfferCloseReason {
 }
 
 impl OfferCloseReason {
-    /// All reasons for which an offer can close.
-    pub const ALL: [OfferCloseReason; 6] = [
-        OfferCloseReason::Taken,
-        OfferCloseReason::OwnKey,
-        OfferCloseReason::Impossible,
-        OfferCloseReason::Fell,
-        OfferCloseReason::Replaced,
-        OfferCloseReason::TrialEnded,
-    ];
-
-    /// Name of the reason for closing an offer, in logs and tables.
+    /// Name of the reason in logs and tables.
     pub fn name(self) -> &'static str {
         match self {
             OfferCloseReason::Taken => "taken",

@@ -7,27 +7,31 @@ use serde::de::{Deserializer, MapAccess, Visitor};
 use serde::{Deserialize, Serialize};
 
 use super::concept::{BenefitUnit, ConceptName};
+use crate::base::settings_table;
 use crate::mind::model::LookingModel;
 
-/// Settings of the assistant, which recommends or sends signals.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct AssistantSpec {
-    /// Whether the assistant computes recommendations in trials in which the assistant does not send signals.
-    pub shadow: ShadowMode,
-    /// The communication concept by which the assistant decides which signals to send.
-    pub concept: ConceptSpec,
-    /// Cost of communication in presses: the expected saving of a signal must exceed this cost (1.5 in the paper).
-    pub cost_of_communication: f64,
-    /// Threshold of the concept ToM: expected belief deviation, a probability, above which ToM sends a signal.
-    pub belief_threshold: f64,
-    /// Number of presses that the concept DEV proposes after an error.
-    pub proposed_presses: usize,
-    /// Whether the assistant of a live session works ahead between requests for advice, which makes the answers come
-    /// sooner, and changes nothing else.
-    pub works_ahead: bool,
-    /// Settings of the planner's rollouts: how finely the planner computes.
-    pub rollout: RolloutSettings,
+settings_table! {
+    /// Settings of the assistant, which recommends or sends signals.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(default, deny_unknown_fields)]
+    AssistantSpec {
+        /// Whether the assistant computes recommendations in trials in which the assistant does not send signals.
+        shadow: ShadowMode = ShadowMode::On,
+        /// The communication concept by which the assistant decides which signals to send.
+        concept: ConceptSpec = ConceptSpec::Own(ConceptName::TomCom),
+        /// Cost of communication in presses: the expected saving of a signal must exceed this cost (1.5 in the paper).
+        cost_of_communication: f64 = 1.5,
+        /// Threshold of the concept ToM: expected belief deviation, a probability, above which ToM sends a signal.
+        // The default threshold is equal to that in the definition of a false belief.
+        belief_threshold: f64 = 0.5,
+        /// Number of presses that the concept DEV proposes after an error.
+        proposed_presses: usize = 1,
+        /// Whether the assistant of a live session works ahead between requests for advice, which makes the answers come
+        /// sooner, and changes nothing else.
+        works_ahead: bool = true,
+        /// Settings of the planner's rollouts: how finely the planner computes.
+        rollout: RolloutSettings = RolloutSettings::default(),
+    }
 }
 
 /// The choice of a communication concept: the name of one of the program's, or a program of somebody else.
@@ -36,7 +40,7 @@ pub struct AssistantSpec {
 pub enum ConceptSpec {
     /// A concept of the program, by its name.
     Own(ConceptName),
-    /// An external concept.
+    /// An external concept: a program that answers over a pipe or a socket.
     External(ExternalMind),
 }
 
@@ -136,65 +140,36 @@ pub enum ShadowMode {
     Off,
 }
 
-impl Default for AssistantSpec {
-    fn default() -> Self {
-        AssistantSpec {
-            shadow: ShadowMode::On,
-            concept: ConceptSpec::Own(ConceptName::TomCom),
-            cost_of_communication: 1.5,
-            // The default threshold is equal to that in the definition of a false belief.
-            belief_threshold: 0.5,
-            proposed_presses: 1,
-            works_ahead: true,
-            rollout: RolloutSettings::default(),
-        }
-    }
-}
-
-/// Settings of the planner's rollouts.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct RolloutSettings {
-    /// Horizon of a rollout: number of the human's decisions.
-    pub horizon: usize,
-    /// Largest number of paired rollouts per signal.
-    pub rollouts: usize,
-    /// Number of worlds drawn from each belief sample in a rollout.
-    pub states: usize,
-    /// Time between two presses of the human in a rollout, in seconds.
-    pub human_press_s: f64,
-    /// Looks per second in rollouts at places that the next press needs, if not as in the human model: see
-    /// [`LookingModel`].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub looks_hz: Option<f64>,
-    /// Looks per second in rollouts at places that the next press does not need, if the rate differs from that of the
-    /// human model.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub other_looks_hz: Option<f64>,
-    /// Share of the changes by others that attract the gaze at once in rollouts, if the share differs from that of the
-    /// human model.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub capture: Option<f64>,
-    /// Standard error of a signal's benefit at which its rollouts end, in presses; twice this is enough if the net
-    /// benefit differs from zero by three standard errors.
-    pub enough_error: f64,
-    /// Least number of paired rollouts per signal.
-    pub least_rollouts: usize,
-}
-
-impl Default for RolloutSettings {
-    fn default() -> Self {
-        RolloutSettings {
-            horizon: 8,
-            rollouts: 256,
-            states: 32,
-            human_press_s: 2.0,
-            looks_hz: None,
-            other_looks_hz: None,
-            capture: None,
-            enough_error: 0.08,
-            least_rollouts: 32,
-        }
+settings_table! {
+    /// Settings of the planner's rollouts.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(default, deny_unknown_fields)]
+    RolloutSettings {
+        /// Horizon of a rollout: number of the human's decisions.
+        horizon: usize = 8,
+        /// Largest number of paired rollouts per signal.
+        rollouts: usize = 256,
+        /// Number of worlds drawn from each belief sample in a rollout.
+        states: usize = 32,
+        /// Time between two presses of the human in a rollout, in seconds.
+        human_press_s: f64 = 2.0,
+        /// Looks per second in rollouts at places that the next press needs, if not as in the human model: see
+        /// [`LookingModel`].
+        #[serde(skip_serializing_if = "Option::is_none")]
+        looks_hz: Option<f64> = None,
+        /// Looks per second in rollouts at places that the next press does not need, if the rate differs from that of the
+        /// human model.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        other_looks_hz: Option<f64> = None,
+        /// Share of the changes by others that attract the gaze at once in rollouts, if the share differs from that of the
+        /// human model.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        capture: Option<f64> = None,
+        /// Standard error of a signal's benefit at which its rollouts end, in presses; twice this is enough if the net
+        /// benefit differs from zero by three standard errors.
+        enough_error: f64 = 0.08,
+        /// Least number of paired rollouts per signal.
+        least_rollouts: usize = 32,
     }
 }
 

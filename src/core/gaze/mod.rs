@@ -50,7 +50,7 @@ impl GazeSample {
         self.taken_ns.map_or(arrived, |taken| taken.min(arrived))
     }
 
-    /// Whether the gaze is on the display, and not beside it.
+    /// Whether the gaze is on the display, and not beside it; a point that is NaN is not.
     pub fn is_on_display(&self) -> bool {
         (0.0..=1.0).contains(&self.x) && (0.0..=1.0).contains(&self.y)
     }

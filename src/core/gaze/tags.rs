@@ -4,7 +4,7 @@
 //! Pupil Labs asks for at least four tags with unique ids, a black edge of at least 8 cm at 2 m, and a white border of
 //! one cell around each tag.
 
-use crate::kitchen::{DisplayArea, Kitchen};
+use crate::kitchen::{DisplayArea, IngredientStorage, Kitchen};
 
 /// The AprilTag ids of the display's corners: top left, top right, bottom right, bottom left.
 pub(crate) const IDS: [u16; 4] = [0, 1, 2, 3];
@@ -55,7 +55,7 @@ impl DisplayTags {
     /// A location or storage lies where the smallest tag would be.
     pub fn place(kitchen: &Kitchen) -> Result<DisplayTags, TagError> {
         let locations = kitchen.locations.iter().map(|location| (location.label(), location.display));
-        let storage = |storage: &crate::kitchen::IngredientStorage| {
+        let storage = |storage: &IngredientStorage| {
             (format!("{} of the {}", storage.label, storage.agent.name()), storage.display)
         };
         let taken: Vec<(String, DisplayArea)> = locations.chain(kitchen.storages.iter().map(storage)).collect();
@@ -67,14 +67,11 @@ impl DisplayTags {
             tags.corners.iter().zip(corners).find_map(|(tag, corner)| Some((corner, hidden(tag)?)))
         };
         let (least, most) = EDGE_MM;
-        let sizes =
-            (least..=most).rev().map(|edge_mm| DisplayTags::of_edge(f64::from(edge_mm) / 1000.0, kitchen.display_m));
-        for tags in sizes {
-            if in_the_way(&tags).is_none() {
-                return Ok(tags);
-            }
+        let of_edge = |edge_mm: u32| DisplayTags::of_edge(f64::from(edge_mm) / 1000.0, kitchen.display_m);
+        if let Some(tags) = (least..=most).rev().map(of_edge).find(|tags| in_the_way(tags).is_none()) {
+            return Ok(tags);
         }
-        let smallest = DisplayTags::of_edge(f64::from(least) / 1000.0, kitchen.display_m);
+        let smallest = of_edge(least);
         let (corner, name) = in_the_way(&smallest).unwrap_or_default();
         let side_m = smallest.edge_m * CELLS as f64 / BLACK_CELLS as f64;
         Err(TagError {
@@ -124,7 +121,7 @@ impl DisplayTag {
 
     /// The cells of the AprilTag: rows from the top, cells from the left; true is black.
     pub fn cells(&self) -> [[bool; CELLS]; CELLS] {
-        let data = IDS.iter().position(|id| *id == self.id).map_or(0, |index| DATA[index]);
+        let data = DATA[usize::from(self.id)];
         let mut cells = [[false; CELLS]; CELLS];
         for (row, line) in cells.iter_mut().enumerate().skip(1).take(BLACK_CELLS) {
             for (column, cell) in line.iter_mut().enumerate().skip(1).take(BLACK_CELLS) {

@@ -105,17 +105,17 @@ impl Kitchen {
         &self.dishes[id.index()]
     }
 
-    /// The state aspect of this name.
+    /// The state aspect with this name: that of a location, or "recipe of DISH".
     pub fn aspect_named(&self, name: &str) -> Option<AspectId> {
         self.aspects.iter().position(|aspect| aspect.name == name).map(|index| AspectId(index as u8))
     }
 
-    /// The location with this name.
+    /// The location with this name in the layout file.
     pub fn location_named(&self, name: &str) -> Option<LocationId> {
         self.locations.iter().position(|location| location.name == name).map(|index| LocationId(index as u8))
     }
 
-    /// The dish of this name.
+    /// The dish with this name in the recipe file.
     pub fn dish_named(&self, name: &str) -> Option<DishId> {
         self.dishes.iter().position(|dish| dish.name == name).map(|index| DishId(index as u8))
     }

@@ -67,8 +67,8 @@ pub fn is_same_key(a: char, b: char) -> bool {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct WallDisplaySpec {
-    pub(crate) width_m: Spanned<f64>,
-    pub(crate) height_m: Spanned<f64>,
+    pub(crate) width_m: f64,
+    pub(crate) height_m: f64,
 }
 
 /// `[table]` of a layout file: the height of the table, and the timing of orders.
@@ -77,9 +77,9 @@ pub(crate) struct WallDisplaySpec {
 pub(crate) struct TabletopSpec {
     /// Height of the table in the frame of the robot's base, in metres.
     pub(crate) height_m: f64,
-    pub(crate) served_shown_s: Spanned<f64>,
+    pub(crate) served_shown_s: f64,
     /// Time from serving an order to the next order at its location, in seconds.
-    pub(crate) new_order_after_s: Spanned<f64>,
+    pub(crate) new_order_after_s: f64,
 }
 
 /// A physical button: its position on the table in the frame of the robot's base, and the human's key for the button.
@@ -160,7 +160,7 @@ pub(crate) struct ProcessButtonSpec {
 pub(crate) struct StorageSpec {
     pub(crate) agent: Agent,
     pub(crate) ingredient: Spanned<String>,
-    pub(crate) display: Spanned<DisplayArea>,
+    pub(crate) display: DisplayArea,
     pub(crate) button: ButtonSpec,
 }
 

@@ -81,24 +81,56 @@ impl Appearance {
     }
 }
 
-/// Identifies a content: an index into [`super::Kitchen::contents`]; 0 is "empty".
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct ContentId(pub u8);
+/// Declares the types that identify the parts of a kitchen by their place in its lists.
+macro_rules! ids {
+    ($($(#[$about:meta])* $id:ident,)*) => {
+        $(
+            $(#[$about])*
+            #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+            pub struct $id(pub u8);
+
+            impl $id {
+                /// The part's place in its list.
+                #[inline]
+                pub fn index(self) -> usize {
+                    usize::from(self.0)
+                }
+            }
+        )*
+    };
+}
+
+ids! {
+    /// Identifies a content: an index into [`super::Kitchen::contents`]; 0 is "empty".
+    #[derive(Default)]
+    ContentId,
+    /// Identifies a location: an index into [`super::Kitchen::locations`].
+    #[derive(Serialize, Deserialize)]
+    LocationId,
+    /// Identifies a dish: an index into [`super::Kitchen::dishes`].
+    #[derive(Serialize, Deserialize)]
+    DishId,
+    /// Identifies a button: an index into the list of one agent's buttons, [`super::Kitchen::buttons`].
+    ButtonId,
+    /// Identifies a state aspect: an index into [`super::Kitchen::aspects`].
+    AspectId,
+}
 
 impl ContentId {
     /// The empty content: the location holds nothing.
     pub const EMPTY: ContentId = ContentId(0);
 
-    /// The content's place in [`Kitchen::contents`](super::Kitchen::contents).
-    #[inline]
-    pub fn index(self) -> usize {
-        usize::from(self.0)
-    }
-
     /// Whether this is the empty content (nothing).
     #[inline]
     pub fn is_empty(self) -> bool {
         self.0 == 0
+    }
+}
+
+impl AspectId {
+    /// The state aspect that is the content of this location; locations come first in the list of aspects.
+    pub fn of_location(location: LocationId) -> AspectId {
+        AspectId(location.0)
     }
 }
 
@@ -135,13 +167,9 @@ pub const SCREEN_LANGUAGE: &str = "en";
 /// Words for items, ingredients and dishes, by language, then by name in logs. The table has a word for every item in
 /// the screens' language, in other languages only the words that the recipe file gives.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct KitchenWords(BTreeMap<String, BTreeMap<String, String>>);
+pub struct KitchenWords(pub(super) BTreeMap<String, BTreeMap<String, String>>);
 
 impl KitchenWords {
-    pub(super) fn new(languages: BTreeMap<String, BTreeMap<String, String>>) -> KitchenWords {
-        KitchenWords(languages)
-    }
-
     /// All languages with words, and these.
     pub fn languages(&self) -> impl Iterator<Item = (&str, &BTreeMap<String, String>)> {
         self.0.iter().map(|(language, words)| (language.as_str(), words))
@@ -158,26 +186,11 @@ impl KitchenWords {
     pub fn content(&self, language: &str, content: &Content, contents: &[Content]) -> String {
         let words = self.in_language(language);
         let word = |name: &str| words.get(name).map_or(name, String::as_str).to_string();
-        match content.is_stack() && !content.is_dish {
-            true => {
-                let items = content.items.iter().map(|item| word(&contents[item.index()].name));
-                items.collect::<Vec<_>>().join(" + ")
-            }
-            false => word(&content.name),
+        if !content.is_stack() || content.is_dish {
+            return word(&content.name);
         }
-    }
-}
-
-/// Identifies a location: an index into [`super::Kitchen::locations`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(transparent)]
-pub struct LocationId(pub u8);
-
-impl LocationId {
-    /// The location's place in [`Kitchen::locations`](super::Kitchen::locations).
-    #[inline]
-    pub fn index(self) -> usize {
-        usize::from(self.0)
+        let items = content.items.iter().map(|item| word(&contents[item.index()].name));
+        items.collect::<Vec<_>>().join(" + ")
     }
 }
 
@@ -204,10 +217,7 @@ impl DisplayArea {
     /// The distance in metres from a point of the display (in fractions) to this area, 0 inside the area; `display_m`
     /// is the size of the display.
     pub fn distance_m(self, point: [f64; 2], display_m: [f64; 2]) -> f64 {
-        let outside = |low: f64, length: f64, value: f64| (low - value).max(value - low - length).max(0.0);
-        let dx = outside(self.x, self.w, point[0]) * display_m[0];
-        let dy = outside(self.y, self.h, point[1]) * display_m[1];
-        dx.hypot(dy)
+        self.gap_m(DisplayArea { x: point[0], y: point[1], w: 0.0, h: 0.0 }, display_m)
     }
 
     /// The least distance in metres between two areas of the display; 0 if the areas touch.
@@ -265,19 +275,6 @@ pub struct IngredientStorage {
     pub display: DisplayArea,
 }
 
-/// Identifies a dish: an index into [`super::Kitchen::dishes`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(transparent)]
-pub struct DishId(pub u8);
-
-impl DishId {
-    /// The dish's place in [`Kitchen::dishes`](super::Kitchen::dishes).
-    #[inline]
-    pub fn index(self) -> usize {
-        usize::from(self.0)
-    }
-}
-
 /// A dish of the menu.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dish {
@@ -307,18 +304,6 @@ pub struct ProcessingStep {
     pub agents: [bool; 2],
     /// Pairs of input item and output item: what the processing step makes of each item.
     pub steps: Vec<(ContentId, ContentId)>,
-}
-
-/// Identifies a button, as an index into the list of one agent's buttons.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct ButtonId(pub u8);
-
-impl ButtonId {
-    /// The button's place in its agent's list of [`Kitchen::buttons`](super::Kitchen::buttons).
-    #[inline]
-    pub fn index(self) -> usize {
-        usize::from(self.0)
-    }
 }
 
 /// The action that a press of a button performs.
@@ -367,23 +352,6 @@ pub enum ButtonColour {
     Blue,
     White,
     Black,
-}
-
-/// Identifies a state aspect: an index into [`super::Kitchen::aspects`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct AspectId(pub u8);
-
-impl AspectId {
-    /// The state aspect that is the content of this location; locations come first in the list of aspects.
-    pub fn of_location(location: LocationId) -> AspectId {
-        AspectId(location.0)
-    }
-
-    /// The aspect's place in [`Kitchen::aspects`](super::Kitchen::aspects).
-    #[inline]
-    pub fn index(self) -> usize {
-        usize::from(self.0)
-    }
 }
 
 /// What a state aspect is about: a location's content or a dish's recipe.

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::compiled::Kitchen;
-use super::parts::{Agent, ButtonAction, ButtonId, ContentId, DishId, LocationId, LocationKind};
+use super::parts::{Agent, ButtonAction, ButtonId, ContentId, DishId, LocationId};
 use super::state::{OrderContent, Recipes, State};
 
 impl Kitchen {
@@ -113,18 +113,6 @@ impl Kitchen {
             _ => None,
         })
     }
-
-    /// The first location that holds a content which is not allowed there; `None` if there is none.
-    pub fn misplaced(&self, state: State) -> Option<LocationId> {
-        let is_misplaced = |location: LocationId| match self.location(location).kind {
-            LocationKind::Order => usize::from(state.code(location)) >= self.dishes.len() + 2,
-            _ => {
-                let content = state.content(location);
-                content.index() >= self.contents.len() || (!content.is_empty() && !self.accepts(location, content))
-            }
-        };
-        self.location_ids().find(|&location| is_misplaced(location))
-    }
 }
 
 /// Why a press has no effect. The reason follows from the button and the true contents alone, and reveals no more than
@@ -140,16 +128,16 @@ pub enum NoEffectReason {
     BothEmpty,
     /// No effect because the place is empty, but would have to hold something.
     PlaceEmpty,
-    /// No effect because the place is occupied, and items cannot be stacked there.
+    /// No effect because the place is occupied, and nothing can be stacked on its content.
     PlaceFull,
     /// No effect because the place does not accept the content of the hand.
     NotAccepted,
-    /// No effect because the content of the hand cannot be stacked on the content of the place.
+    /// No effect because the stack at the place has an item of this kind already.
     NotStacked,
     /// No effect because the content of the place was processed in this way already.
     AlreadyProcessed,
-    /// No effect because the content of the place can be processed in this way only after another step. The reason does
-    /// not say which step.
+    /// No effect because the content of the place can be processed in this way, or that of the hand be stacked, only
+    /// after another step. The reason does not say which step.
     NeedsOtherStep,
     /// No effect because the content of the place is never processed in this way.
     NotProcessed,
@@ -175,8 +163,11 @@ impl Kitchen {
             ButtonAction::Use(location) => match (is_empty(hand), is_empty(location)) {
                 (true, _) => (NoEffectReason::BothEmpty, location),
                 (false, true) => (NoEffectReason::NotAccepted, location),
-                (false, false) if location == self.board => (NoEffectReason::NotStacked, location),
-                (false, false) => (NoEffectReason::PlaceFull, location),
+                (false, false) if location != self.board => (NoEffectReason::PlaceFull, location),
+                (false, false) => match self.not_stacked(state.content(location), state.content(hand)) {
+                    NoEffectReason::NeedsOtherStep => (NoEffectReason::NeedsOtherStep, hand),
+                    reason => (reason, location),
+                },
             },
             ButtonAction::Process(process) => {
                 let place = self.processes[usize::from(process)].place.unwrap_or(hand);
@@ -192,6 +183,18 @@ impl Kitchen {
                 (OrderContent::Dish(_), false) => (NoEffectReason::NotServed, order),
             },
         })
+    }
+
+    /// Why these contents, which do not stack, do not.
+    fn not_stacked(&self, below: ContentId, above: ContentId) -> NoEffectReason {
+        let mut all = (0..self.contents.len()).map(|index| ContentId(index as u8));
+        if all.all(|other| self.stacked(below, other).is_none()) {
+            NoEffectReason::PlaceFull
+        } else if self.made_of(above).iter().any(|&made| self.stacked(below, made).is_some()) {
+            NoEffectReason::NeedsOtherStep
+        } else {
+            NoEffectReason::NotStacked
+        }
     }
 
     /// Why this processing step, which does not apply to the content, does not.

@@ -86,16 +86,7 @@ struct Episode {
     in_time: std::ops::RangeInclusive<usize>,
 }
 
-/// Numbers of detections and false flags that one threshold gives in one group of aspects.
-#[derive(Clone, Copy, Debug, Default)]
-struct Outcome {
-    threshold: f64,
-    caught: usize,
-    false_flags: usize,
-    wrongly: usize,
-    right: usize,
-}
-
+/// Numbers of detections and false flags.
 #[derive(Clone, Copy, Debug, Default)]
 struct FlagCounts {
     presses: usize,
@@ -153,10 +144,7 @@ impl FlagCounts {
         let mut counts = FlagCounts { presses, ..FlagCounts::default() };
         for (group, threshold) in groups.iter().zip([thresholds.locations, thresholds.recipes]) {
             let episodes: Vec<Episode> = group.iter().flat_map(|&aspect| harmful(trials, aspect)).collect();
-            let Outcome { caught, false_flags, wrongly, right, .. } =
-                Outcome::from_threshold(trials, group, &episodes, threshold);
-            let episodes = episodes.len();
-            counts = counts.plus(FlagCounts { presses: 0, episodes, caught, false_flags, wrongly, right });
+            counts = counts.plus(FlagCounts::from_threshold(trials, group, &episodes, threshold));
         }
         counts
     }
@@ -203,28 +191,33 @@ pub fn chosen_thresholds(trials: &[TrialBeliefs], groups: &AspectGroups) -> Opti
 fn best_thresholds(trials: &[&TrialBeliefs], groups: &AspectGroups) -> FlagThresholds {
     let presses: usize = trials.iter().map(|trial| trial.len()).sum();
     let wrongly = allowed_wrongly(trials, groups);
-    let outcomes = groups.each_ref().map(|group| -> Vec<Outcome> {
+    let outcomes = groups.each_ref().map(|group| -> Vec<(f64, FlagCounts)> {
         let episodes: Vec<Episode> = group.iter().flat_map(|&aspect| harmful(trials, aspect)).collect();
         let tried = candidates(trials, group, wrongly).into_iter();
-        tried.map(|one| Outcome::from_threshold(trials, group, &episodes, one)).collect()
+        tried.map(|one| (one, FlagCounts::from_threshold(trials, group, &episodes, one))).collect()
     });
     let false_flags = (MOST_FALSE_FLAGS * presses as f64 / PER_PRESSES) as usize;
     let best = best_pair(&outcomes[0], &outcomes[1], [false_flags, wrongly]);
     // If no pair of thresholds stays within the allowed numbers of false flags, nothing is flagged.
-    best.map_or(FlagThresholds { locations: f64::INFINITY, recipes: f64::INFINITY }, |[location, recipe]| {
-        FlagThresholds { locations: location.threshold, recipes: recipe.threshold }
-    })
+    best.unwrap_or(FlagThresholds { locations: f64::INFINITY, recipes: f64::INFINITY })
 }
 
-/// The pair of outcomes (locations, recipes) with most detections within the allowed numbers of false flags and wrongly
-/// flagged pairs.
-fn best_pair(locations: &[Outcome], recipes: &[Outcome], allowed: [usize; 2]) -> Option<[Outcome; 2]> {
-    let pairs = locations.iter().flat_map(|one| recipes.iter().map(move |other| [*one, *other]));
-    let false_flags = |pair: &[Outcome; 2]| pair.iter().map(|one| one.false_flags).sum::<usize>();
-    let wrongly = |pair: &[Outcome; 2]| pair.iter().map(|one| one.wrongly).sum::<usize>();
-    let caught = |pair: &[Outcome; 2]| pair.iter().map(|one| one.caught).sum::<usize>();
-    let fitting = pairs.filter(|pair| false_flags(pair) <= allowed[0] && wrongly(pair) <= allowed[1]);
-    fitting.max_by(|a, b| caught(a).cmp(&caught(b)).then(false_flags(b).cmp(&false_flags(a))))
+/// The thresholds with most detections within the allowed numbers of false flags and wrongly flagged pairs, from those
+/// that were tried for locations and for recipes.
+fn best_pair(
+    locations: &[(f64, FlagCounts)],
+    recipes: &[(f64, FlagCounts)],
+    allowed: [usize; 2],
+) -> Option<FlagThresholds> {
+    let pairs = locations.iter().flat_map(|(locations, one)| {
+        let with = move |(recipes, other): &(f64, FlagCounts)| {
+            (FlagThresholds { locations: *locations, recipes: *recipes }, one.plus(*other))
+        };
+        recipes.iter().map(with)
+    });
+    let fitting = pairs.filter(|(_, both)| both.false_flags <= allowed[0] && both.wrongly <= allowed[1]);
+    let best = fitting.max_by_key(|(_, both)| (both.caught, std::cmp::Reverse(both.false_flags)));
+    best.map(|(thresholds, _)| thresholds)
 }
 
 /// Allowed number of flagged (press, aspect) pairs with a right belief.
@@ -284,14 +277,15 @@ fn harmful(trials: &[&TrialBeliefs], aspect: usize) -> Vec<Episode> {
     episodes
 }
 
-impl Outcome {
-    fn from_threshold(trials: &[&TrialBeliefs], group: &[usize], episodes: &[Episode], threshold: f64) -> Outcome {
+impl FlagCounts {
+    /// What one threshold gives in one group of aspects, without the number of presses.
+    fn from_threshold(trials: &[&TrialBeliefs], group: &[usize], episodes: &[Episode], threshold: f64) -> FlagCounts {
         let is_flagged = |press: &BeliefsBeforePress, aspect: usize| score(press, aspect) >= threshold;
         let is_caught = |episode: &&Episode| {
             trials[episode.trial][episode.in_time.clone()].iter().any(|press| is_flagged(press, episode.aspect))
         };
         let caught = episodes.iter().filter(is_caught).count();
-        let mut outcome = Outcome { threshold, caught, ..Outcome::default() };
+        let mut outcome = FlagCounts { episodes: episodes.len(), caught, ..FlagCounts::default() };
         for presses in trials {
             for &aspect in group {
                 let mut before = false;

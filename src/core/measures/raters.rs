@@ -143,7 +143,7 @@ impl ErrorCauseCode {
 pub struct CodableErrors {
     /// Log numbers of the presses that were errors, in ascending order.
     pub errors: Vec<u64>,
-    /// Names of the kitchen's locations.
+    /// Names of the kitchen's locations, which a code of a false belief may be about.
     pub places: Vec<String>,
 }
 

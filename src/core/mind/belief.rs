@@ -3,6 +3,7 @@
 use rand::RngExt;
 
 use super::RecordedBelief;
+use super::filter::draws::value_at;
 use crate::base::rng::{Stream, shuffle};
 use crate::kitchen::{AspectId, AspectKind, Kitchen, OrderContent, State, WeightedWorld, WeightedWorlds, World};
 
@@ -100,13 +101,8 @@ impl Belief {
         for (index, values) in self.of.iter().enumerate() {
             shuffle(&mut strata, random);
             for (one, &stratum) in worlds.iter_mut().zip(&strata) {
-                let mut left = (stratum as f64 + random.random::<f64>()) * weight;
-                let reached = values.iter().position(|p| {
-                    left -= p;
-                    left < 0.0
-                });
-                let value = reached.unwrap_or(values.len() - 1);
-                one.world.set_value(kitchen, AspectId(index as u8), value);
+                let value = value_at(values, (stratum as f64 + random.random::<f64>()) * weight);
+                one.world.set_value(kitchen, AspectId(index as u8), usize::from(value));
             }
         }
         worlds

@@ -259,7 +259,7 @@ fn all_weights(row: &[f64], sums: &[u32], least: u32) -> ([f64; MAX_BUTTONS], f6
 
 model_table! {
     /// Parameters of the choice model (paper, section "Human model").
-    ChoiceParameters, GivenChoice {
+    ChoiceParameters, GivenChoice, decision {
         /// Softmax rationality tau, per press: how strongly a lower expected cost to go is preferred.
         tau: f64,
         /// The lapse rate: share of presses that are slips.

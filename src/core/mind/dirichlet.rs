@@ -68,17 +68,17 @@ impl Dirichlet {
     /// With probability q = `share` the belief becomes certain of one value, drawn from the distribution c = `values`,
     /// otherwise the belief stays unchanged: m' = (1 - q) m + q c, S' = (1 - q) S + q.
     pub fn learn(&mut self, share: f64, values: impl IntoIterator<Item = f64>) {
-        let second = (1.0 - share) * self.second() + share;
-        for (mean, value) in self.mean.iter_mut().zip(values) {
-            *mean = (1.0 - share) * *mean + share * value;
-        }
-        self.set_second(second);
+        self.blend(share, values, 1.0);
     }
 
     /// Mixes this Dirichlet with another one over the same values, matching mean and second moment of the mixture.
     pub fn mix(&mut self, share: f64, other: &Dirichlet) {
-        let second = (1.0 - share) * self.second() + share * other.second();
-        for (mean, &value) in self.mean.iter_mut().zip(&other.mean) {
+        self.blend(share, other.mean.iter().copied(), other.second());
+    }
+
+    fn blend(&mut self, share: f64, values: impl IntoIterator<Item = f64>, second: f64) {
+        let second = (1.0 - share) * self.second() + share * second;
+        for (mean, value) in self.mean.iter_mut().zip(values) {
             *mean = (1.0 - share) * *mean + share * value;
         }
         self.set_second(second);
@@ -128,7 +128,7 @@ fn sum_of(values: &[f64], of: impl Fn(f64) -> f64) -> f64 {
 /// The estimate of what the human believes: one Dirichlet per state aspect, in the order of the kitchen's aspects.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DirichletBelief {
-    /// The Dirichlet distribution over the values of each state aspect.
+    /// For each state aspect, in the kitchen's order, the Dirichlet over its values.
     pub aspects: Vec<Dirichlet>,
 }
 

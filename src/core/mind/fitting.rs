@@ -50,66 +50,61 @@ impl HumanModelParameter {
         HumanModelParameter::RecipeHalfLifeS,
     ];
 
-    /// Name of the human model's parameter in a parameter file.
-    pub fn name(self) -> &'static str {
+    /// Name, unit and bounds of the parameter.
+    fn entry(self) -> (&'static str, &'static str, [f64; 2]) {
         match self {
-            HumanModelParameter::Tau => "tau",
-            HumanModelParameter::Lapse => "lapse",
-            HumanModelParameter::RadiusDeg => "radius_deg",
-            HumanModelParameter::ReadingRateHz => "reading_rate_hz",
-            HumanModelParameter::RecipeHalfLifeS => "recipe_half_life_s",
-            HumanModelParameter::Foresight => "foresight",
-            HumanModelParameter::LooksHz => "looks_hz",
-            HumanModelParameter::OtherLooksHz => "other_looks_hz",
-            HumanModelParameter::Capture => "capture",
-            HumanModelParameter::RecipeTruth => "recipe_truth",
+            HumanModelParameter::Tau => ("tau", "1/press", [0.05, 20.0]),
+            HumanModelParameter::Lapse => ("lapse", "share", [0.001, 0.5]),
+            HumanModelParameter::RadiusDeg => ("radius_deg", "deg", [0.25, 16.0]),
+            HumanModelParameter::ReadingRateHz => ("reading_rate_hz", "1/s", [0.2, 100.0]),
+            HumanModelParameter::RecipeHalfLifeS => ("recipe_half_life_s", "s", [5.0, 20_000.0]),
+            HumanModelParameter::Foresight => ("foresight", "share", [0.001, 0.999]),
+            HumanModelParameter::LooksHz => ("looks_hz", "1/s", [0.01, 20.0]),
+            HumanModelParameter::OtherLooksHz => ("other_looks_hz", "1/s", [0.01, 20.0]),
+            HumanModelParameter::Capture => ("capture", "share", [0.001, 0.999]),
+            HumanModelParameter::RecipeTruth => ("recipe_truth", "probability", [0.01, 0.999]),
         }
     }
 
-    /// Unit of the human model's parameter.
+    /// Name of the parameter in a parameter file.
+    pub fn name(self) -> &'static str {
+        self.entry().0
+    }
+
+    /// Unit of the parameter: "1/press", "share", "deg", "1/s", "s" or "probability".
     pub fn unit(self) -> &'static str {
+        self.entry().1
+    }
+
+    /// Bounds of the parameter during the fit. Above tau = 20 per press the best button is chosen practically always,
+    /// so that presses carry no information about tau.
+    pub fn bounds(self) -> [f64; 2] {
+        self.entry().2
+    }
+
+    fn of(self, model: &mut HumanModel) -> &mut f64 {
         match self {
-            HumanModelParameter::Tau => "1/press",
-            HumanModelParameter::Lapse | HumanModelParameter::Foresight | HumanModelParameter::Capture => "share",
-            HumanModelParameter::RadiusDeg => "deg",
-            HumanModelParameter::ReadingRateHz | HumanModelParameter::LooksHz | HumanModelParameter::OtherLooksHz => {
-                "1/s"
-            }
-            HumanModelParameter::RecipeHalfLifeS => "s",
-            HumanModelParameter::RecipeTruth => "probability",
+            HumanModelParameter::Tau => &mut model.decision.tau,
+            HumanModelParameter::Lapse => &mut model.decision.lapse,
+            HumanModelParameter::RadiusDeg => &mut model.perception.radius_deg,
+            HumanModelParameter::ReadingRateHz => &mut model.perception.reading_rate_hz,
+            HumanModelParameter::RecipeHalfLifeS => &mut model.transition.recipe_half_life_s,
+            HumanModelParameter::Foresight => &mut model.transition.foresight,
+            HumanModelParameter::LooksHz => &mut model.looking.looks_hz,
+            HumanModelParameter::OtherLooksHz => &mut model.looking.other_looks_hz,
+            HumanModelParameter::Capture => &mut model.looking.capture,
+            HumanModelParameter::RecipeTruth => &mut model.prior.recipe_truth,
         }
     }
 
     /// Value of this parameter in a human model.
     pub fn get(self, model: &HumanModel) -> f64 {
-        match self {
-            HumanModelParameter::Tau => model.decision.tau,
-            HumanModelParameter::Lapse => model.decision.lapse,
-            HumanModelParameter::RadiusDeg => model.perception.radius_deg,
-            HumanModelParameter::ReadingRateHz => model.perception.reading_rate_hz,
-            HumanModelParameter::RecipeHalfLifeS => model.transition.recipe_half_life_s,
-            HumanModelParameter::Foresight => model.transition.foresight,
-            HumanModelParameter::LooksHz => model.looking.looks_hz,
-            HumanModelParameter::OtherLooksHz => model.looking.other_looks_hz,
-            HumanModelParameter::Capture => model.looking.capture,
-            HumanModelParameter::RecipeTruth => model.prior.recipe_truth,
-        }
+        *self.of(&mut model.clone())
     }
 
     /// Sets this parameter in a human model.
     pub fn set(self, model: &mut HumanModel, value: f64) {
-        match self {
-            HumanModelParameter::Tau => model.decision.tau = value,
-            HumanModelParameter::Lapse => model.decision.lapse = value,
-            HumanModelParameter::RadiusDeg => model.perception.radius_deg = value,
-            HumanModelParameter::ReadingRateHz => model.perception.reading_rate_hz = value,
-            HumanModelParameter::RecipeHalfLifeS => model.transition.recipe_half_life_s = value,
-            HumanModelParameter::Foresight => model.transition.foresight = value,
-            HumanModelParameter::LooksHz => model.looking.looks_hz = value,
-            HumanModelParameter::OtherLooksHz => model.looking.other_looks_hz = value,
-            HumanModelParameter::Capture => model.looking.capture = value,
-            HumanModelParameter::RecipeTruth => model.prior.recipe_truth = value,
-        }
+        *self.of(model) = value;
     }
 
     /// Why a fit that begins with this model cannot have this parameter, and what would be right; `None` if it can. A
@@ -138,29 +133,16 @@ impl HumanModelParameter {
         })
     }
 
-    /// Bounds of the parameter during the fit. Above tau = 20 per press the best button is chosen practically always,
-    /// so that presses carry no information about tau.
-    pub fn bounds(self) -> [f64; 2] {
-        match self {
-            HumanModelParameter::Tau => [0.05, 20.0],
-            HumanModelParameter::Lapse => [0.001, 0.5],
-            HumanModelParameter::RadiusDeg => [0.25, 16.0],
-            HumanModelParameter::ReadingRateHz => [0.2, 100.0],
-            HumanModelParameter::RecipeHalfLifeS => [5.0, 20_000.0],
-            HumanModelParameter::Foresight | HumanModelParameter::Capture => [0.001, 0.999],
-            HumanModelParameter::LooksHz | HumanModelParameter::OtherLooksHz => [0.01, 20.0],
-            HumanModelParameter::RecipeTruth => [0.01, 0.999],
-        }
+    /// Whether the parameter lies between 0 and 1.
+    fn is_share(self) -> bool {
+        matches!(self.unit(), "share" | "probability")
     }
 
     /// Transforms a parameter's value to the scale of the fit: the logarithm for a quantity, the log odds for a share,
     /// and ln(1 / (1 / tau + 0.1)) for tau, since the likelihood changes less and less as tau grows.
     pub fn to_scale(self, value: f64) -> f64 {
         match self {
-            HumanModelParameter::Lapse
-            | HumanModelParameter::Foresight
-            | HumanModelParameter::Capture
-            | HumanModelParameter::RecipeTruth => {
+            share if share.is_share() => {
                 let p = value.clamp(1e-4, 1.0 - 1e-4);
                 (p / (1.0 - p)).ln()
             }
@@ -172,10 +154,7 @@ impl HumanModelParameter {
     /// The value of a parameter from the scale of the fit, the inverse of [`HumanModelParameter::to_scale`].
     pub fn from_scale(self, scaled: f64) -> f64 {
         match self {
-            HumanModelParameter::Lapse
-            | HumanModelParameter::Foresight
-            | HumanModelParameter::Capture
-            | HumanModelParameter::RecipeTruth => 1.0 / (1.0 + (-scaled).exp()),
+            share if share.is_share() => 1.0 / (1.0 + (-scaled).exp()),
             HumanModelParameter::Tau => 1.0 / ((-scaled).exp() - STRICT),
             _ => scaled.exp(),
         }
@@ -184,10 +163,7 @@ impl HumanModelParameter {
     /// Standard error of a parameter's value from its standard error on the scale of the fit (delta method).
     pub fn error_of(self, value: f64, scaled_error: f64) -> f64 {
         let slope = match self {
-            HumanModelParameter::Lapse
-            | HumanModelParameter::Foresight
-            | HumanModelParameter::Capture
-            | HumanModelParameter::RecipeTruth => value * (1.0 - value),
+            share if share.is_share() => value * (1.0 - value),
             HumanModelParameter::Tau => value * (1.0 + STRICT * value),
             _ => value,
         };

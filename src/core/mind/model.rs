@@ -13,11 +13,11 @@ use crate::kitchen::{Kitchen, LocationId, LocationKind};
 // A file names a model and may give single parameters on top of it. So every table of parameters has a twin in which each
 // parameter may be missing; what is missing is taken from the named model.
 
-/// Declares a table of parameters, and its twin of which a file gives some.
+/// Declares a table of parameters, its twin of which a file gives some, and as its default the field of the default model.
 macro_rules! model_table {
     (
         $(#[$about:meta])*
-        $table:ident, $given:ident {
+        $table:ident, $given:ident, $field:ident {
             $($(#[$meaning:meta])* $parameter:ident: $kind:ty,)*
         }
     ) => {
@@ -38,6 +38,12 @@ macro_rules! model_table {
             /// The table of a model with the given parameters in their places.
             pub fn on(self, model: $table) -> $table {
                 $table { $($parameter: self.$parameter.unwrap_or(model.$parameter),)* }
+            }
+        }
+
+        impl Default for $table {
+            fn default() -> $table {
+                $crate::mind::model::PLAIN.$field
             }
         }
     };
@@ -93,7 +99,7 @@ pub struct HumanModel {
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct GivenHumanModel {
-    /// The named model.
+    /// The named model, which gives the parameters that the file does not give.
     pub model: HumanModelName,
     /// Given parameters of the prior.
     pub prior: GivenPrior,
@@ -140,7 +146,7 @@ pub enum PerceptionUnit {
 
 model_table! {
     /// The human's belief at the start of a trial (prior).
-    PriorModel, GivenPrior {
+    PriorModel, GivenPrior, prior {
         /// Expected probability of a location's true content; the remaining probability is spread evenly over the other
         /// contents.
         location_truth: f64,
@@ -162,7 +168,7 @@ pub(crate) const CONFIDENCE_RAMP: f64 = 0.4;
 
 model_table! {
     /// Perception: how gaze near a location becomes an observation of the location's content.
-    PerceptionModel, GivenPerception {
+    PerceptionModel, GivenPerception, perception {
         /// Whether a look or a gaze sample is one observation.
         observation: PerceptionUnit,
         /// Reading rate lambda at distance 0 and full confidence, in readings per second, where looks are observations.
@@ -235,7 +241,7 @@ impl PerceptionModel {
 model_table! {
     /// Plausible looking: where people look, in rates. The belief filter uses these rates while the gaze is unknown,
     /// the planner in its rollouts.
-    LookingModel, GivenLooking {
+    LookingModel, GivenLooking, looking {
         /// Whether the belief filter marginalises over plausible looks while the gaze is unknown; otherwise it assumes
         /// that nothing is seen then.
         marginalised: bool,
@@ -275,7 +281,7 @@ impl LocationReadingRate {
 
 model_table! {
     /// Transition model: how the human's belief changes without new evidence.
-    TransitionModel, GivenTransition {
+    TransitionModel, GivenTransition, transition {
         /// Half-life with which beliefs about a recipe decay to the prior, in seconds: of how many people still hold
         /// what they have learned.
         recipe_half_life_s: f64,
@@ -287,7 +293,7 @@ model_table! {
 
 model_table! {
     /// Sample sizes of the inference of the belief.
-    InferenceSettings, GivenInference {
+    InferenceSettings, GivenInference, inference {
         /// Number of belief samples drawn from the estimate at a press.
         beliefs: usize,
         /// Number of worlds (state and recipes) drawn from each belief sample.
@@ -321,7 +327,7 @@ model_table! {
     ///
     /// With `delay_s` = 0 a signal is believed at once with the probability `noticed`. Otherwise a signal is read while
     /// it stands on the display, and may be missed.
-    SignalModel, GivenSignal {
+    SignalModel, GivenSignal, signal {
         /// Probability that a signal is noticed. Where signals take time: that a signal which stands for long is
         /// noticed under unknown gaze.
         noticed: f64,
@@ -507,27 +513,6 @@ fn differ(own: &Value, named: &Value, path: &str, found: &mut Vec<String>) {
         let of = |table: &serde_json::Map<String, Value>| table.get(key).cloned().unwrap_or_default();
         differ(&of(own), &of(named), &inner, found);
     }
-}
-
-/// The default of each table is that of the default model.
-macro_rules! defaults {
-    ($($table:ident: $field:ident,)*) => {
-        $(impl Default for $table {
-            fn default() -> $table {
-                PLAIN.$field
-            }
-        })*
-    };
-}
-
-defaults! {
-    PriorModel: prior,
-    PerceptionModel: perception,
-    LookingModel: looking,
-    TransitionModel: transition,
-    ChoiceParameters: decision,
-    SignalModel: signal,
-    InferenceSettings: inference,
 }
 
 impl Default for HumanModel {

@@ -23,7 +23,8 @@ struct PageConnection {
     /// Whether the session was told that the page is lost.
     is_told_lost: bool,
     page: String,
-    size: ActivePage,
+    /// Width and height of the page in pixels, and whether it shows the layout of upright screens.
+    size: (u32, u32, bool),
     pressed: u64,
     /// Name of the button that was pressed last, and the time of that press on the server's clock, in milliseconds.
     last: Option<(String, f64)>,
@@ -31,8 +32,8 @@ struct PageConnection {
 
 /// Serves a participant page until one side closes the connection.
 pub(super) async fn serve_page(socket: PageSocket, hub: Arc<ServerState>) {
-    let (page, size, pressed) = (String::new(), ActivePage::default(), 0);
-    let mut connection = PageConnection { socket, hub, is_told_lost: false, page, size, pressed, last: None };
+    let (page, size) = (String::new(), (0, 0, false));
+    let mut connection = PageConnection { socket, hub, is_told_lost: false, page, size, pressed: 0, last: None };
     let Some(waits) = connection.identify().await else { return };
     let door = connection.socket.door.clone();
     // Beyond the limit of watching pages, only the page that takes part is admitted to the display.
@@ -43,19 +44,24 @@ pub(super) async fn serve_page(socket: PageSocket, hub: Arc<ServerState>) {
     door.counts.pages.fetch_add(1, Ordering::Relaxed);
     connection.run().await;
     door.counts.pages.fetch_sub(1, Ordering::Relaxed);
-    connection.stop_taking_part().await;
+    if connection.acts() {
+        connection.hub.acting.send_replace(None);
+        if !connection.is_told_lost {
+            connection.report_lost().await;
+        }
+    }
 }
 
 impl PageConnection {
     /// Sends the display texts to a new page, and waits until the page has identified itself. Returns whether the page
     /// wants to watch while another page takes part.
     async fn identify(&mut self) -> Option<bool> {
-        self.socket.say(&MessageToPage::Words { words: self.hub.words.clone() }).await?;
+        self.socket.say(&MessageToPage::Words { words: &self.hub.words }).await?;
         let mut size = self.size;
         let hello = self.socket.identify(|message| match *message {
             MessageFromPage::Hello { width, height, upright, .. }
             | MessageFromPage::Size { width, height, upright } => {
-                size = ActivePage { width_px: width, height_px: height, upright, ..size };
+                size = (width, height, upright);
                 Ok(())
             }
             _ => Err("unexpected"),
@@ -93,34 +99,20 @@ impl PageConnection {
         took
     }
 
-    /// Keeps the size of the page in pixels, and whether the page shows the layout of upright screens.
-    fn note_size(&mut self, width_px: u32, height_px: u32, upright: bool) {
-        self.size = ActivePage { width_px, height_px, upright, ..self.size };
-    }
-
     /// Reports to the session that a page takes part, with the page's size.
     async fn report_size(&mut self) -> Option<()> {
-        let ActivePage { width_px, height_px, upright, .. } = self.size;
-        self.hub.status.page(|page| {
+        let (width_px, height_px, _) = self.size;
+        self.hub.change_page(|page| {
             let page = page.get_or_insert_default();
-            (page.width_px, page.height_px, page.upright) = (width_px, height_px, upright);
+            (page.width_px, page.height_px, page.upright) = self.size;
         });
         self.hub.inputs.send(PageInput::Connected { width_px, height_px }).await.ok()
     }
 
     /// Reports to the session that the page that took part is lost.
     async fn report_lost(&mut self) {
-        self.hub.status.page(|page| *page = None);
+        self.hub.change_page(|page| *page = None);
         let _ = self.hub.inputs.send(PageInput::Lost { since: self.socket.life.alive() }).await;
-    }
-
-    async fn stop_taking_part(&mut self) {
-        if self.acts() {
-            self.hub.acting.send_replace(None);
-            if !self.is_told_lost {
-                self.report_lost().await;
-            }
-        }
     }
 
     fn acts(&self) -> bool {
@@ -193,18 +185,18 @@ impl PageConnection {
             Some(MessageFromPage::Ping { t, took, hidden }) => {
                 if self.acts() {
                     let change = |page: &mut ActivePage| page.round_trip_ms = took.or(page.round_trip_ms);
-                    self.hub.status.page(|page| page.iter_mut().for_each(change));
+                    self.hub.change_page(|page| page.iter_mut().for_each(change));
                 }
                 self.socket.pong(t, hidden).await
             }
             Some(MessageFromPage::Voice { there }) => {
                 if self.acts() {
-                    self.hub.status.page(|page| page.iter_mut().for_each(|page| page.voice = Some(there)));
+                    self.hub.change_page(|page| page.iter_mut().for_each(|page| page.voice = Some(there)));
                 }
                 Some(())
             }
             Some(MessageFromPage::Size { width, height, upright }) => {
-                self.note_size(width, height, upright);
+                self.size = (width, height, upright);
                 if self.acts() { self.report_size().await } else { Some(()) }
             }
             Some(MessageFromPage::TakePart) => {
@@ -237,17 +229,14 @@ impl PageConnection {
             MessageFromPage::Reply(reply) => PageInput::Reply(reply),
             MessageFromPage::Drawn { cue, at } => PageInput::Drawn { cue, at: self.hub.moment(at) },
             MessageFromPage::Redrawn { took } => {
-                let change = |page: &mut ActivePage| page.redraw_ms = Some(took);
-                self.hub.status.page(|page| page.iter_mut().for_each(change));
+                self.hub.change_page(|page| page.iter_mut().for_each(|page| page.redraw_ms = Some(took)));
                 return Some(());
             }
             MessageFromPage::Hello { .. }
             | MessageFromPage::Ping { .. }
             | MessageFromPage::Size { .. }
             | MessageFromPage::Voice { .. }
-            | MessageFromPage::TakePart => {
-                return self.socket.fault();
-            }
+            | MessageFromPage::TakePart => return self.socket.fault(),
         };
         self.hub.inputs.send(input).await.ok()
     }

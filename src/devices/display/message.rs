@@ -2,12 +2,11 @@
 //! the server's clock.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use crate::page_server::{PageMessage, text};
+use crate::page_server::PageMessage;
 use crate::sight::{DisplayContent, DisplayScene, RobotHandPose};
 use tomcom_session::questionnaire::AnswerValue;
 
@@ -80,12 +79,28 @@ pub enum MessageFromPage {
     Reply(ParticipantResponse),
 }
 
-/// A message to the participant's page other than scene and state.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+/// A message to the participant's page.
+#[derive(Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
-pub(super) enum MessageToPage {
+pub(super) enum MessageToPage<'a> {
     Words {
-        words: BTreeMap<String, String>,
+        words: &'a BTreeMap<String, String>,
+    },
+    /// The static scene (layout of the kitchen on the display).
+    Scene {
+        scene: &'a DisplayScene,
+    },
+    /// What the display shows now; during a probe, or with the trial's clock, also with the seconds that are left, and
+    /// the time on the server's clock at which they were left.
+    Sight {
+        sight: &'a DisplayContent,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        at: Option<f64>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        left_s: Option<f64>,
+    },
+    Robot {
+        robot: &'a RobotHandPose,
     },
     /// Role of the page: taking part, watching while another page takes part, or watching while it could take part.
     Role {
@@ -167,41 +182,6 @@ fn is_answer(answer: &AnswerValue) -> bool {
         AnswerValue::Text(text) => is_short(text),
         AnswerValue::Options(options) => options.len() <= 9 && options.iter().all(is_short),
     }
-}
-
-/// The message with the static scene (layout of the kitchen on the display).
-pub(super) fn scene(scene: &DisplayScene) -> Arc<str> {
-    #[derive(Serialize)]
-    struct Message<'a> {
-        kind: &'static str,
-        scene: &'a DisplayScene,
-    }
-    text(&Message { kind: "scene", scene })
-}
-
-/// The message with what the display shows now; during a probe, or with the trial's clock, also with the seconds that
-/// are left, and the time on the server's clock at which they were left.
-pub(super) fn sight(sight: &DisplayContent, left: Option<(f64, f64)>) -> Arc<str> {
-    #[derive(Serialize)]
-    struct Message<'a> {
-        kind: &'static str,
-        sight: &'a DisplayContent,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        at: Option<f64>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        left_s: Option<f64>,
-    }
-    let (at, left_s) = (left.map(|(at_ms, _)| at_ms), left.map(|(_, left_s)| left_s));
-    text(&Message { kind: "sight", sight, at, left_s })
-}
-
-pub(super) fn robot(pose: &RobotHandPose) -> Arc<str> {
-    #[derive(Serialize)]
-    struct Message<'a> {
-        kind: &'static str,
-        robot: &'a RobotHandPose,
-    }
-    text(&Message { kind: "robot", robot: pose })
 }
 
 /// An input to the session from the participant page that takes part.

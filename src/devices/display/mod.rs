@@ -13,13 +13,15 @@ pub use server_state::{ActivePage, DisplayCounts};
 
 use std::io;
 use std::net::{IpAddr, SocketAddr};
-use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::sync::{Arc, PoisonError};
 
 use tokio::sync::mpsc::{Receiver, channel};
 use tokio::sync::watch;
 
+use self::message::MessageToPage;
 use self::server_state::{DisplayStatus, LIMITS, PageFeed, ServerState};
-use crate::page_server::{PageDoor, PageServer};
+use crate::page_server::{PageDoor, PageServer, text};
 use crate::sight::page_language::DisplayWords;
 use crate::sight::{DisplayContent, DisplayScene, RobotHandPose};
 
@@ -94,20 +96,27 @@ impl Drop for DisplayServer {
 impl DisplayHandle {
     /// Sends a new scene (the fixed layout of kitchen and page) to the pages.
     pub fn build(&self, scene: &DisplayScene) {
-        self.scene.send_replace(message::scene(scene));
+        self.scene.send_replace(text(&MessageToPage::Scene { scene }));
     }
 
     /// Sends to the pages what the display shows now, with the time in seconds that a probe or the trial still has.
     pub fn show(&self, sight: &DisplayContent, left_s: Option<f64>) {
-        let at_ms = self.door.now_ms();
-        self.sight.send_replace(message::sight(sight, left_s.map(|left_s| (at_ms, left_s))));
+        let at = left_s.map(|_| self.door.now_ms());
+        self.sight.send_replace(text(&MessageToPage::Sight { sight, at, left_s }));
     }
 
-    pub fn move_robot(&self, pose: &RobotHandPose) {
-        self.robot.send_replace(message::robot(pose));
+    pub fn move_robot(&self, robot: &RobotHandPose) {
+        self.robot.send_replace(text(&MessageToPage::Robot { robot }));
     }
 
     pub fn counts(&self) -> DisplayCounts {
-        self.status.counts(&self.door.counts)
+        let page = *self.status.lock().unwrap_or_else(PoisonError::into_inner);
+        let counts = &self.door.counts;
+        DisplayCounts {
+            page,
+            watching: counts.pages.load(Ordering::Relaxed).saturating_sub(u64::from(page.is_some())),
+            malformed: counts.malformed.load(Ordering::Relaxed),
+            refused: counts.refused.load(Ordering::Relaxed),
+        }
     }
 }

@@ -1,8 +1,7 @@
 //! State that all connections of the participant's display share, and counters of its pages.
 
 use std::collections::BTreeMap;
-use std::sync::atomic::Ordering;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use tokio::sync::mpsc::Sender;
@@ -11,7 +10,7 @@ use tokio::sync::watch;
 use super::connection::serve_page;
 use super::message::PageInput;
 use crate::connection_table::ConnectionLimits;
-use crate::page_server::{PageCounts, PageDoor, PageRoom, PageSocket};
+use crate::page_server::{PageDoor, PageRoom, PageSocket};
 
 /// Limits for connections to the display's server. Far fewer connections are admitted as watching pages than can be
 /// open, so that a new page always has room for its handshake. The page that takes part is reserved and not counted.
@@ -88,6 +87,11 @@ impl ServerState {
         let age_ms = (self.door.now_ms() - at_ms).clamp(0.0, OLDEST_MS);
         now.checked_sub(Duration::from_secs_f64(age_ms / 1000.0)).unwrap_or(now)
     }
+
+    /// Updates the state of the participant page that takes part.
+    pub fn change_page(&self, change: impl FnOnce(&mut Option<ActivePage>)) {
+        change(&mut self.status.lock().unwrap_or_else(PoisonError::into_inner));
+    }
 }
 
 /// State of the participant page that takes part.
@@ -114,25 +118,4 @@ pub struct DisplayCounts {
 }
 
 /// State of the page that takes part, for the program.
-#[derive(Debug, Default)]
-pub(super) struct DisplayStatus {
-    page: Mutex<Option<ActivePage>>,
-}
-
-impl DisplayStatus {
-    /// The present state of the participant's pages, with their counters.
-    pub fn counts(&self, counts: &PageCounts) -> DisplayCounts {
-        let page = *self.page.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        DisplayCounts {
-            page,
-            watching: counts.pages.load(Ordering::Relaxed).saturating_sub(u64::from(page.is_some())),
-            malformed: counts.malformed.load(Ordering::Relaxed),
-            refused: counts.refused.load(Ordering::Relaxed),
-        }
-    }
-
-    /// Updates the state of the participant page that takes part.
-    pub fn page(&self, change: impl FnOnce(&mut Option<ActivePage>)) {
-        change(&mut self.page.lock().unwrap_or_else(std::sync::PoisonError::into_inner));
-    }
-}
+pub(super) type DisplayStatus = Mutex<Option<ActivePage>>;

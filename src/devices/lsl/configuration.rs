@@ -5,23 +5,18 @@ use std::path::PathBuf;
 
 use tomcom_session::files::file_error::read_regular;
 
-/// Environment variable that names liblsl's configuration file.
-const VARIABLE: &str = "LSLAPICFG";
 /// Default name of liblsl's configuration file.
 const NAME: &str = "lsl_api.cfg";
-/// Table of the configuration file that controls log messages.
-const LOG: &str = "log";
 /// Text of the table that turns off all of liblsl's log messages except fatal ones.
 const QUIET: &str = "\n[log]\nlevel = -3\n";
 
 /// Text of the lab's configuration file for liblsl (empty without a file), with log messages turned off.
 pub(super) fn configuration() -> String {
-    let named = std::env::var_os(VARIABLE).map(PathBuf::from);
+    let named = std::env::var_os("LSLAPICFG").map(PathBuf::from);
     let home = std::env::home_dir().map(|home| home.join("lsl_api").join(NAME));
     let system = PathBuf::from("/etc/lsl_api").join(NAME);
     let places = named.into_iter().chain([PathBuf::from(NAME)]).chain(home).chain([system]);
-    let text = places.filter_map(|place| read_regular(&place).ok()).next().unwrap_or_default();
-    quiet(&text)
+    quiet(&places.filter_map(|place| read_regular(&place).ok()).next().unwrap_or_default())
 }
 
 /// Text of a configuration file in which the table for log messages is replaced by one that turns them off.
@@ -30,7 +25,7 @@ fn quiet(text: &str) -> String {
     let kept = text.lines().filter(|line| {
         let line = line.trim();
         if let Some(table) = line.strip_prefix('[') {
-            is_about_messages = table.trim_end_matches(']').trim() == LOG;
+            is_about_messages = table.trim_end_matches(']').trim() == "log";
         }
         !is_about_messages
     });

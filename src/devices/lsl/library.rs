@@ -69,7 +69,6 @@ functions! {
     get_type: fn(Pointer) -> *const c_char;
     get_hostname: fn(Pointer) -> *const c_char;
     get_source_id: fn(Pointer) -> *const c_char;
-    get_uid: fn(Pointer) -> *const c_char;
     get_channel_count: fn(Pointer) -> i32;
     get_channel_format: fn(Pointer) -> i32;
     get_desc: fn(Pointer) -> Pointer;
@@ -321,23 +320,19 @@ pub struct DiscoveredLslStream {
 }
 
 impl DiscoveredLslStream {
+    fn text(&self, get: unsafe extern "C" fn(Pointer) -> *const c_char) -> String {
+        // SAFETY: the description exists as long as this value, and its text with it; the text is copied.
+        unsafe { Functions::read(get(self.info)) }
+    }
+
     pub fn identity(&self) -> [String; 3] {
         let functions = self.functions;
-        // SAFETY: the description exists as long as this value, and its texts with it; the texts are copied.
-        [functions.get_name, functions.get_type, functions.get_hostname]
-            .map(|get| unsafe { Functions::read(get(self.info)) })
+        [functions.get_name, functions.get_type, functions.get_hostname].map(|get| self.text(get))
     }
 
     /// The source of the stream, which the sender names: a device or a program.
     pub fn source(&self) -> String {
-        // SAFETY: the description exists as long as this value, and its text with it; the text is copied.
-        unsafe { Functions::read((self.functions.get_source_id)(self.info)) }
-    }
-
-    /// The number that the library gave to this stream alone.
-    pub fn uid(&self) -> String {
-        // SAFETY: the description exists as long as this value, and its text with it; the text is copied.
-        unsafe { Functions::read((self.functions.get_uid)(self.info)) }
+        self.text(self.functions.get_source_id)
     }
 
     pub fn is_text(&self) -> bool {

@@ -15,8 +15,8 @@ pub use configuration::LslError;
 pub use gaze_inlet::{InletThreadGuard, channel_names, follow, missing_channel};
 pub use library::{DiscoveredLslStream, LslLibrary};
 pub use outlets::{
-    LslCounts, LslSample, LslSampleConverter, LslSampleValues, LslStreams, MetadataNode, SOURCE, StreamChannel,
-    StreamDescription, StreamSample, code, describe, event_text,
+    LslCounts, LslSampleConverter, LslSampleValues, LslStreams, MetadataNode, SOURCE, StreamChannel, StreamDescription,
+    StreamSample, code, describe, event_text,
 };
 
 use std::path::absolute;

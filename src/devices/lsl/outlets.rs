@@ -38,14 +38,6 @@ const END: Duration = Duration::from_secs(2);
 /// Period of comparing LSL's clock with this computer's.
 const COMPARE: Duration = Duration::from_secs(1);
 
-/// A sample for a stream, with the time of the event that it describes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LslSample {
-    pub outlet: LslOutlet,
-    pub at: Instant,
-    pub values: LslSampleValues,
-}
-
 /// Numbers of samples sent over LSL, dropped, and refused.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LslCounts {
@@ -63,12 +55,15 @@ struct Counters {
     refused: AtomicU64,
 }
 
+/// Samples, each with the instant of the event that it describes.
+type Packet = Vec<(Instant, StreamSample)>;
+
 /// LSL streams that are offered to other programs until this value is dropped.
 #[derive(Debug)]
 pub struct LslStreams {
     pub descriptions: Vec<StreamDescription>,
     /// Queue to the sending thread; `None` once no more samples will be sent.
-    packets: Option<SyncSender<Vec<LslSample>>>,
+    packets: Option<SyncSender<Packet>>,
     counters: Arc<Counters>,
     done: Receiver<()>,
 }
@@ -79,13 +74,14 @@ impl LslStreams {
     /// # Errors
     /// The LSL library refuses one of the streams, or does not answer.
     pub fn offer(library: LslLibrary, descriptions: Vec<StreamDescription>) -> Result<LslStreams, LslError> {
-        let (packets, told) = sync_channel::<Vec<LslSample>>(WAITING);
+        let (packets, told) = sync_channel::<Packet>(WAITING);
         let (begun, begins) = channel();
         let (end, done) = channel();
         let (counters, streams) = (Arc::new(Counters::default()), descriptions.clone());
         let counted = counters.clone();
         let work = move || {
-            let outlets = match offer_all(library, &streams) {
+            let offered = streams.iter().map(|stream| Ok((stream.outlet, library.offer(stream)?)));
+            let outlets = match offered.collect::<Result<BTreeMap<_, _>, LslError>>() {
                 Ok(outlets) => outlets,
                 Err(error) => return drop(begun.send(Err(error))),
             };
@@ -105,7 +101,7 @@ impl LslStreams {
     }
 
     /// Queues samples for sending, or drops the samples if the sending thread is too slow.
-    pub fn tell(&self, samples: Vec<LslSample>) {
+    pub fn tell(&self, samples: Packet) {
         let Some(packets) = self.packets.as_ref().filter(|_| !samples.is_empty()) else { return };
         if let Err(TrySendError::Full(samples) | TrySendError::Disconnected(samples)) = packets.try_send(samples) {
             self.counters.dropped.fetch_add(samples.len() as u64, Relaxed);
@@ -126,18 +122,11 @@ impl Drop for LslStreams {
     }
 }
 
-fn offer_all(
-    library: LslLibrary,
-    streams: &[StreamDescription],
-) -> Result<BTreeMap<LslOutlet, LslOutletHandle>, LslError> {
-    streams.iter().map(|stream| Ok((stream.outlet, library.offer(stream)?))).collect()
-}
-
 /// Sends the queued samples over LSL until the queue is closed.
 fn send(
     library: LslLibrary,
     outlets: &BTreeMap<LslOutlet, LslOutletHandle>,
-    told: &Receiver<Vec<LslSample>>,
+    told: &Receiver<Packet>,
     counters: &Counters,
 ) {
     let mut clock = ClockOffsetEstimator::new();
@@ -153,8 +142,8 @@ fn send(
             compared = Instant::now();
             compare(&mut clock, &library);
         }
-        for sample in &packet {
-            let outlet = outlets.get(&sample.outlet).zip(clock.device_s(sample.at));
+        for (at, sample) in &packet {
+            let outlet = outlets.get(&sample.outlet).zip(clock.device_s(*at));
             let is_taken = outlet.is_some_and(|(outlet, time_s)| match &sample.values {
                 LslSampleValues::Numbers(values) => outlet.push_numbers(values, time_s),
                 LslSampleValues::Texts(values) => outlet.push_texts(values, time_s),
@@ -237,6 +226,7 @@ fn description(outlet: LslOutlet, spec: &SessionSpec, kitchen: &Kitchen) -> Stre
     let study = spec.step.as_ref().map(|step| step.plan.as_str());
     let texts = |labels: &[&str]| labels.iter().map(|label| stream_channel(*label, "")).collect();
     let numbers = |labels: Vec<String>, unit| labels.into_iter().map(|label| stream_channel(label, unit)).collect();
+    let signal_label = |signal: &Signal| format!("{}/{}", signal.kind().tag(), signal.names().join("/"));
     let (content, channels): (_, Vec<StreamChannel>) = match outlet {
         LslOutlet::Markers => ("Markers", texts(&["code"])),
         LslOutlet::Events => ("Events", texts(&["event"])),
@@ -244,7 +234,13 @@ fn description(outlet: LslOutlet, spec: &SessionSpec, kitchen: &Kitchen) -> Stre
         LslOutlet::Beliefs => {
             ("Beliefs", numbers(kitchen.aspects.iter().map(|aspect| aspect.name.clone()).collect(), "probability"))
         }
-        LslOutlet::NetBenefit => ("NetBenefit", numbers(signal_labels(spec, kitchen), net_benefit_unit(spec))),
+        LslOutlet::NetBenefit => {
+            let unit = match spec.assistant.concept.name().unit() {
+                BenefitUnit::Deviation => "probability",
+                BenefitUnit::Presses | BenefitUnit::None => "presses",
+            };
+            ("NetBenefit", numbers(session_signals(spec, kitchen).iter().map(signal_label).collect(), unit))
+        }
         LslOutlet::Gaze => {
             let mut channels: Vec<StreamChannel> = numbers(vec!["x".to_string(), "y".to_string()], "normalised");
             channels.push(stream_channel("confidence", "probability"));
@@ -269,53 +265,29 @@ fn stream_channel(label: impl ToString, unit: &'static str) -> StreamChannel {
 }
 
 /// All signals that can be sent in a session, in the order of their channels.
-pub(super) fn session_signals(spec: &SessionSpec, kitchen: &Kitchen) -> Vec<Signal> {
+fn session_signals(spec: &SessionSpec, kitchen: &Kitchen) -> Vec<Signal> {
     signals(kitchen, spec.highlights(kitchen)).into_iter().map(|(_, signal)| signal).collect()
-}
-
-fn signal_labels(spec: &SessionSpec, kitchen: &Kitchen) -> Vec<String> {
-    let label = |signal: Signal| format!("{}/{}", signal.kind().tag(), signal.names().join("/"));
-    session_signals(spec, kitchen).into_iter().map(label).collect()
-}
-
-/// Unit of the channels with the net benefit of signals: presses, or the deviation of beliefs.
-fn net_benefit_unit(spec: &SessionSpec) -> &'static str {
-    match spec.assistant.concept.name().unit() {
-        BenefitUnit::Deviation => "probability",
-        BenefitUnit::Presses | BenefitUnit::None => "presses",
-    }
 }
 
 /// Metadata that all LSL streams have: program, participant, study, and layout of the kitchen.
 fn about(code: &str, study: Option<&str>, kitchen: &Kitchen) -> Vec<MetadataNode> {
     let text = |name, value: &str| MetadataNode::text(name, value);
-    let mut about = vec![
-        MetadataNode::group("program", vec![text("name", SOURCE), text("version", env!("CARGO_PKG_VERSION"))]),
-        text("participant", code),
-    ];
-    about.extend(study.map(|study| text("study", study)));
+    let numbers = |fields: &[(&'static str, f64)]| -> Vec<MetadataNode> {
+        fields.iter().map(|(name, value)| MetadataNode::text(name, value)).collect()
+    };
     let location = |location: &Location| {
         let area = location.display;
-        let number = |name, value: f64| MetadataNode::text(name, value);
-        let fields = vec![
-            text("name", &location.name),
-            number("x", area.x),
-            number("y", area.y),
-            number("width", area.w),
-            number("height", area.h),
-        ];
-        MetadataNode::group("location", fields)
+        let places = numbers(&[("x", area.x), ("y", area.y), ("width", area.w), ("height", area.h)]);
+        MetadataNode::group("location", [vec![text("name", &location.name)], places].concat())
     };
     let [width_m, height_m] = kitchen.display_m;
-    about.push(MetadataNode::group(
-        "layout",
-        vec![
-            text("name", &kitchen.name),
-            MetadataNode::text("display_width_m", width_m),
-            MetadataNode::text("display_height_m", height_m),
-            MetadataNode::group("locations", kitchen.locations.iter().map(location).collect()),
-        ],
-    ));
+    let size = numbers(&[("display_width_m", width_m), ("display_height_m", height_m)]);
+    let locations = MetadataNode::group("locations", kitchen.locations.iter().map(location).collect());
+    let layout = [vec![text("name", &kitchen.name)], size, vec![locations]].concat();
+    let program = vec![text("name", SOURCE), text("version", env!("CARGO_PKG_VERSION"))];
+    let mut about = vec![MetadataNode::group("program", program), text("participant", code)];
+    about.extend(study.map(|study| text("study", study)));
+    about.push(MetadataNode::group("layout", layout));
     about
 }
 

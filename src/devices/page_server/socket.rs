@@ -35,7 +35,7 @@ pub(crate) trait PageMessage: Sized {
 }
 
 /// Messages that every room sends.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 enum SocketMessage {
     /// Answer to a page's ping: the time in the ping, and the server's time, both in milliseconds.
@@ -138,7 +138,7 @@ impl PageSocket {
 
     /// Checks the page's pairing code, and tells the page if the code is wrong; returns whether the code is right.
     async fn pair(&mut self, page: &str, code: &str) -> Option<bool> {
-        let (why, wait) = match self.door.pair(self.place.address(), page, code) {
+        let (why, wait) = match self.door.pair(self.place.address, page, code) {
             PairingVerdict::Right => return Some(true),
             PairingVerdict::Wrong(wait) => ("wrong", wait),
             PairingVerdict::Locked(wait) => ("locked", wait),
@@ -199,13 +199,13 @@ impl PageSocket {
         if self.life.is_gone(now) {
             return None;
         }
-        self.life.pinged(now);
+        self.life.pinged = now;
         timeout(STUCK, self.socket.send(Message::Ping(Bytes::new()))).await.ok()?.ok()
     }
 
     /// Answers a page's ping.
     pub async fn pong(&mut self, t: f64, is_hidden: bool) -> Option<()> {
-        self.life.hide(is_hidden);
+        self.life.is_hidden = is_hidden;
         self.say(&SocketMessage::Pong { t, at: self.door.now_ms() }).await
     }
 
@@ -260,14 +260,6 @@ impl PageLife {
         }
     }
 
-    pub fn hide(&mut self, is_hidden: bool) {
-        self.is_hidden = is_hidden;
-    }
-
-    pub fn pinged(&mut self, now: Instant) {
-        self.pinged = now;
-    }
-
     /// Time of the server's next ping to the page, or of giving up the page.
     pub fn next(&self) -> Instant {
         (self.pinged + PING).min(self.gone_at())
@@ -303,12 +295,12 @@ mod tests {
     fn stays_s(answers: bool, is_hidden: bool, message_s: u64) -> u64 {
         let start = Instant::now();
         let mut life = PageLife::new(start);
-        life.hide(is_hidden);
+        life.is_hidden = is_hidden;
         let hours_s = 6 * 3600;
         let gone = (1..=hours_s).find(|second| {
             let now = start + Duration::from_secs(*second);
             if now >= life.next() && !life.is_gone(now) {
-                life.pinged(now);
+                life.pinged = now;
                 if answers {
                     life.heard(now, false);
                 }
@@ -333,7 +325,7 @@ mod tests {
         assert!(!life.is_silent(start + Duration::from_millis(1900)) && life.is_silent(start + LOST), "told soon");
         life.heard(start + LOST, false);
         assert!(life.is_silent(start + LOST), "a visible page that says nothing, whose browser answers");
-        life.hide(true);
+        life.is_hidden = true;
         assert!(!life.is_silent(start + LOST), "a hidden page says something rarely");
         assert_eq!(stays_s(true, true, hours_s), 90, "a hidden page that hangs");
         assert_eq!(stays_s(false, true, 60), 8, "a hidden page whose browser is gone");

@@ -27,15 +27,6 @@ pub(super) struct CaptureClient {
     pub news: Sender<TrackerMessage>,
 }
 
-/// Event for which the task that serves requests to Capture waits.
-enum DeskEvent {
-    Time,
-    Order(Option<CaptureRequest>),
-    Recorder(Option<CaptureNotification>),
-    Subscription(io::Result<ZmtpMessage>),
-    Due,
-}
-
 impl CaptureClient {
     /// Initialises the clock offset by averaging Capture's first replies to time requests.
     pub async fn set_clock(remote: &mut ZmtpConnection, clock: &Mutex<ClockOffsetEstimator>) -> io::Result<()> {
@@ -87,26 +78,25 @@ impl CaptureClient {
                     None => pending().await,
                 }
             };
-            let event = tokio::select! {
-                _ = asking.tick() => DeskEvent::Time,
-                order = orders.recv() => DeskEvent::Order(order),
-                news = told.recv() => DeskEvent::Recorder(news),
-                found = self.annotations.receive() => DeskEvent::Subscription(found),
-                () = is_due => DeskEvent::Due,
-            };
-            let now = Instant::now();
-            actions.extend(match event {
-                DeskEvent::Time => match self.check_time(clock).await {
+            actions.extend(tokio::select! {
+                _ = asking.tick() => match self.check_time(clock).await {
                     Ok(()) => Vec::new(),
                     Err(reason) => return reason,
                 },
-                DeskEvent::Order(Some(order)) => recorder.order(order, now),
-                DeskEvent::Recorder(Some(news)) => recorder.heard(news, now),
-                DeskEvent::Order(None) | DeskEvent::Recorder(None) => return io::ErrorKind::BrokenPipe.into(),
-                DeskEvent::Subscription(Ok(found)) if is_annotated(&found) => recorder.listens(now),
-                DeskEvent::Subscription(Ok(_)) => Vec::new(),
-                DeskEvent::Subscription(Err(reason)) => return reason,
-                DeskEvent::Due => recorder.pass(now),
+                order = orders.recv() => match order {
+                    Some(order) => recorder.order(order, Instant::now()),
+                    None => return io::ErrorKind::BrokenPipe.into(),
+                },
+                news = told.recv() => match news {
+                    Some(news) => recorder.heard(news, Instant::now()),
+                    None => return io::ErrorKind::BrokenPipe.into(),
+                },
+                found = self.annotations.receive() => match found {
+                    Ok(found) if is_annotated(&found) => recorder.listens(Instant::now()),
+                    Ok(_) => Vec::new(),
+                    Err(reason) => return reason,
+                },
+                () = is_due => recorder.pass(Instant::now()),
             });
         }
     }

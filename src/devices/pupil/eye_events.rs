@@ -35,9 +35,7 @@ pub struct FixationFragment {
 
 /// Merges the overlapping windows of a fixation.
 #[derive(Debug, Default)]
-pub struct FixationMerger {
-    current: Option<MergedWindows>,
-}
+pub struct FixationMerger(Option<MergedWindows>);
 
 #[derive(Clone, Copy, Debug)]
 struct MergedWindows {
@@ -54,23 +52,23 @@ impl FixationMerger {
             let [begin, end] = merged.span_s;
             merged.id == window.id && window.span_s[0] <= end + APART_S && window.span_s[1] >= begin - APART_S
         };
-        if let Some(current) = self.current.as_mut().filter(|current| belongs(&current.merged)) {
+        if let Some(current) = self.0.as_mut().filter(|current| belongs(&current.merged)) {
             current.add(&window, now);
             return None;
         }
         let places = f64::from(u8::from(window.at.is_some()));
-        self.current.replace(MergedWindows { merged: window, windows: 1.0, places, heard: now }).map(|over| over.merged)
+        self.0.replace(MergedWindows { merged: window, windows: 1.0, places, heard: now }).map(|over| over.merged)
     }
 
     /// Returns the present fixation if no window of this fixation has arrived for a while.
     pub fn expire(&mut self, now: Instant) -> Option<FixationFragment> {
         let is_over = |current: &MergedWindows| now.saturating_duration_since(current.heard) >= SILENCE;
-        self.current.take_if(|current| is_over(current)).map(|over| over.merged)
+        self.0.take_if(|current| is_over(current)).map(|over| over.merged)
     }
 
     /// Returns the fixation that was not yet over when Capture's messages ended.
     pub fn end(&mut self) -> Option<FixationFragment> {
-        self.current.take().map(|over| over.merged)
+        self.0.take().map(|over| over.merged)
     }
 }
 
@@ -90,14 +88,9 @@ impl MergedWindows {
     }
 }
 
-/// Merges repeated onsets and offsets of blinks.
-#[derive(Debug, Default)]
-pub struct BlinkMerger {
-    lids: Lids,
-}
-
+/// Merges repeated onsets and offsets of blinks: the state of the lids.
 #[derive(Clone, Copy, Debug, Default)]
-enum Lids {
+pub enum BlinkMerger {
     #[default]
     Open,
     /// The lids are closed: an onset was received, the latest one at this instant.
@@ -110,41 +103,37 @@ impl BlinkMerger {
     /// Adds an onset or offset of a blink that arrived at `now`. Returns the offset of the previous blink, if that
     /// blink is over, and then the onset of a new blink.
     pub fn take(&mut self, blink: PupilBlink, now: Instant) -> [Option<PupilBlink>; 2] {
-        let (lids, told) = match (self.lids, blink.is_onset) {
+        use BlinkMerger::{Closed, Open, Opening};
+        let (lids, told) = match (*self, blink.is_onset) {
             // An offset without an onset belongs to a blink that began before the program listened.
-            (Lids::Open, false) => (Lids::Open, [None, None]),
-            (Lids::Closed(heard), true) if now.saturating_duration_since(heard) < REOPENED => {
-                (Lids::Closed(now), [None, None])
-            }
-            (Lids::Open | Lids::Closed(_), true) => (Lids::Closed(now), [None, Some(blink)]),
-            (Lids::Closed(_), false) => (Lids::Opening(blink, now), [None, None]),
-            (Lids::Opening(before, _), false) => {
+            (Open, false) => (Open, [None, None]),
+            (Closed(heard), true) if now.saturating_duration_since(heard) < REOPENED => (Closed(now), [None, None]),
+            (Open | Closed(_), true) => (Closed(now), [None, Some(blink)]),
+            (Closed(_), false) => (Opening(blink, now), [None, None]),
+            (Opening(before, _), false) => {
                 let confidence = before.confidence.max(blink.confidence);
                 let last = PupilBlink { confidence, timestamp: before.timestamp.max(blink.timestamp), ..blink };
-                (Lids::Opening(last, now), [None, None])
+                (Opening(last, now), [None, None])
             }
-            (Lids::Opening(before, _), true) => (Lids::Closed(now), [Some(before), Some(blink)]),
+            (Opening(before, _), true) => (Closed(now), [Some(before), Some(blink)]),
         };
-        self.lids = lids;
+        *self = lids;
         told
     }
 
     /// Returns the last offset of a blink if no message has arrived for a while.
     pub fn expire(&mut self, now: Instant) -> Option<PupilBlink> {
-        match self.lids {
-            Lids::Opening(last, heard) if now.saturating_duration_since(heard) >= SILENCE => {
-                self.lids = Lids::Open;
-                Some(last)
-            }
+        match self {
+            BlinkMerger::Opening(_, heard) if now.saturating_duration_since(*heard) >= SILENCE => self.end(),
             _ => None,
         }
     }
 
     /// Returns the last offset of a blink that was about to end when Capture's messages ended.
     pub fn end(&mut self) -> Option<PupilBlink> {
-        match std::mem::take(&mut self.lids) {
-            Lids::Opening(last, _) => Some(last),
-            Lids::Open | Lids::Closed(_) => None,
+        match std::mem::take(self) {
+            BlinkMerger::Opening(last, _) => Some(last),
+            BlinkMerger::Open | BlinkMerger::Closed(_) => None,
         }
     }
 }

@@ -9,7 +9,7 @@ use tokio::sync::mpsc::Sender;
 use tokio::time::timeout;
 
 use super::eye_events::{BlinkMerger, FixationFragment, FixationMerger};
-use super::message::{self, CaptureNotification, PupilBlink, PupilFixation, PupilMessage};
+use super::message::{self, CaptureNotification, PupilBlink, PupilMessage};
 use super::zmtp::{ZmtpConnection, ZmtpMessage};
 use crate::compared_clock::ClockOffsetEstimator;
 use crate::gaze_input::{TrackerFixation, TrackerMessage, TrackerTime};
@@ -51,8 +51,6 @@ impl<'a> Listener<'a> {
         clock: &'a Mutex<ClockOffsetEstimator>,
         lost: &'a mut u64,
     ) -> Listener<'a> {
-        let (fixations, blinks) = (FixationMerger::default(), BlinkMerger::default());
-        let others = BTreeSet::new();
         Listener {
             news,
             recorder,
@@ -60,10 +58,10 @@ impl<'a> Listener<'a> {
             map,
             clock,
             lost,
-            fixations,
-            blinks,
+            fixations: FixationMerger::default(),
+            blinks: BlinkMerger::default(),
             sees: None,
-            others,
+            others: BTreeSet::new(),
             has_new_others: false,
         }
     }
@@ -90,7 +88,9 @@ impl<'a> Listener<'a> {
             if sees || connected.elapsed() >= UNSEEN {
                 self.tell_surfaces(sees).await;
             }
-            self.expire(Instant::now());
+            let now = Instant::now();
+            let (fixation, blink) = (self.fixations.expire(now), self.blinks.expire(now));
+            self.tell_over(fixation, blink);
             if self.news.is_closed() {
                 return io::ErrorKind::BrokenPipe.into();
             }
@@ -100,11 +100,6 @@ impl<'a> Listener<'a> {
     /// Reports the fixation and the blink that had not ended when the connection ended.
     pub fn end(&mut self) {
         let (fixation, blink) = (self.fixations.end(), self.blinks.end());
-        self.tell_over(fixation, blink);
-    }
-
-    fn expire(&mut self, now: Instant) {
-        let (fixation, blink) = (self.fixations.expire(now), self.blinks.expire(now));
         self.tell_over(fixation, blink);
     }
 
@@ -146,8 +141,8 @@ impl<'a> Listener<'a> {
             self.offer(TrackerMessage::Sample(sample, taken.at));
         }
         for found in told.fixations {
-            let window = self.window(&found);
-            if let Some(over) = self.fixations.take(window, now) {
+            let at = found.at.and_then(|place| self.map.to_display(place));
+            if let Some(over) = self.fixations.take(FixationFragment { at, ..found }, now) {
                 self.tell_fixation(over);
             }
         }
@@ -170,16 +165,6 @@ impl<'a> Listener<'a> {
         }
         if *self.lost > 0 && self.news.try_send(TrackerMessage::Overrun(*self.lost)).is_ok() {
             *self.lost = 0;
-        }
-    }
-
-    fn window(&self, found: &PupilFixation) -> FixationFragment {
-        FixationFragment {
-            id: found.id,
-            at: found.on_surface.and_then(|place| self.map.to_display(place)),
-            span_s: [found.timestamp, found.timestamp + found.duration_ms / 1000.0],
-            dispersion_deg: found.dispersion_deg,
-            confidence: found.confidence,
         }
     }
 

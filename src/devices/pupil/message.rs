@@ -5,6 +5,7 @@
 use rmpv::Value;
 use rmpv::decode::read_value_with_max_depth;
 
+use super::eye_events::FixationFragment;
 use crate::gaze_input::MAX_SECONDS;
 
 /// Largest nesting depth of a Capture message.
@@ -35,22 +36,6 @@ pub struct SurfaceGaze {
     pub timestamp: f64,
 }
 
-/// A fixation as Capture sends it; messages with the same id repeat while the fixation lasts.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PupilFixation {
-    pub id: u64,
-    /// Position of the fixation on the surface; `None` if the position is given in the scene camera's image.
-    pub on_surface: Option<[f64; 2]>,
-    /// Capture's confidence in the fixation, 0 to 1.
-    pub confidence: f64,
-    /// Beginning of the fixation in Pupil time, in seconds.
-    pub timestamp: f64,
-    /// Duration of the fixation so far, in milliseconds.
-    pub duration_ms: f64,
-    /// Spatial dispersion of the fixation's gaze samples, in degrees.
-    pub dispersion_deg: f64,
-}
-
 /// Onset or offset of a blink, as Capture sends it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PupilBlink {
@@ -77,8 +62,8 @@ pub struct PupilMessage {
     pub sees_surface: bool,
     /// Gaze samples in the message, in the order in which they were taken.
     pub gaze: Vec<SurfaceGaze>,
-    /// Fixations in the message, which may last on or have ended.
-    pub fixations: Vec<PupilFixation>,
+    /// Windows of fixations in the message, with positions on the surface, not yet on the display.
+    pub fixations: Vec<FixationFragment>,
     /// Onset or offset of a blink, if the message contains one.
     pub blink: Option<PupilBlink>,
     pub other_surface: Option<String>,
@@ -156,15 +141,14 @@ fn gaze(item: &Value) -> Option<SurfaceGaze> {
     Some(SurfaceGaze { norm_pos: place(item)?, confidence: gaze_confidence(item)?, timestamp: time(item)? })
 }
 
-fn fixation(item: &Value, is_on_surface: bool) -> Option<PupilFixation> {
-    let on_surface = if is_on_surface { Some(place(item)?) } else { None };
-    Some(PupilFixation {
+fn fixation(item: &Value, is_on_surface: bool) -> Option<FixationFragment> {
+    let (begin_s, duration_ms) = (time(item)?, number(item, "duration").filter(|duration| *duration >= 0.0)?);
+    Some(FixationFragment {
         id: field(item, "id")?.as_u64()?,
-        on_surface,
-        confidence: confidence(item)?,
-        timestamp: time(item)?,
-        duration_ms: number(item, "duration").filter(|duration| *duration >= 0.0)?,
+        at: if is_on_surface { Some(place(item)?) } else { None },
+        span_s: [begin_s, begin_s + duration_ms / 1000.0],
         dispersion_deg: number(item, "dispersion").filter(|dispersion| *dispersion >= 0.0)?,
+        confidence: confidence(item)?,
     })
 }
 

@@ -54,8 +54,8 @@ pub fn follow(capture: CaptureConfiguration) -> (Receiver<TrackerMessage>, Sende
         let recorder = CaptureRecordingControl::new(capture.records);
         let mut follower = Follower { capture, news, orders, recorder, run: None, lost: 0 };
         while !follower.news.is_closed() {
-            let was_there = follower.once().await;
-            if let Err(reason) = was_there {
+            // A Capture that was not there before is not lost.
+            if let Ok(reason) = follower.once().await {
                 follower.tell_lost(&reason).await;
             }
             sleep(RETRY).await;
@@ -86,31 +86,33 @@ struct Follower {
 }
 
 impl Follower {
-    /// Follows Capture until the connection is lost; returns the reason, and whether Capture had been connected.
-    async fn once(&mut self) -> Result<(), Lost> {
-        let never = |reason: io::Error| Lost { reason, was_there: false };
+    /// Connects to Capture and follows it until the connection is lost; returns the reason.
+    ///
+    /// # Errors
+    /// Capture could not be connected.
+    async fn once(&mut self) -> io::Result<io::Error> {
         let (address, port) = (self.capture.address.clone(), self.capture.port);
-        let mut remote = ZmtpConnection::open(&address, port, SocketRole::Req).await.map_err(never)?;
-        let version = remote.ask(&[b"v"]).await.map_err(never)?;
+        let mut remote = ZmtpConnection::open(&address, port, SocketRole::Req).await?;
+        let version = remote.ask(&[b"v"]).await?;
         let clock = Mutex::new(ClockOffsetEstimator::new());
-        CaptureClient::set_clock(&mut remote, &clock).await.map_err(never)?;
-        let sub_port = port_of(&remote.ask(&[b"SUB_PORT"]).await.map_err(never)?).map_err(never)?;
-        let pub_port = port_of(&remote.ask(&[b"PUB_PORT"]).await.map_err(never)?).map_err(never)?;
-        let mut backbone = ZmtpConnection::open(&address, sub_port, SocketRole::Sub).await.map_err(never)?;
+        CaptureClient::set_clock(&mut remote, &clock).await?;
+        let sub_port = port_of(&remote.ask(&[b"SUB_PORT"]).await?)?;
+        let pub_port = port_of(&remote.ask(&[b"PUB_PORT"]).await?)?;
+        let mut backbone = ZmtpConnection::open(&address, sub_port, SocketRole::Sub).await?;
         // All surfaces are subscribed to: if the display's surface is not detected, the names of the other surfaces
         // help to find the error.
         for topic in [SURFACES].iter().chain(&TOPICS) {
-            backbone.subscribe(topic).await.map_err(never)?;
+            backbone.subscribe(topic).await?;
         }
-        let annotations = ZmtpConnection::open(&address, pub_port, SocketRole::Pub).await.map_err(never)?;
+        let annotations = ZmtpConnection::open(&address, pub_port, SocketRole::Pub).await?;
         let mut client = CaptureClient { remote, annotations, news: self.news.clone() };
-        let listens = client.start_plugin().await.map_err(never)?;
+        let listens = client.start_plugin().await?;
         self.tell(TrackerMessage::Connected(format!("Pupil Capture {version}"))).await;
         let run = [sub_port, pub_port];
         let is_same_run = self.run.replace(run) == Some(run);
-        let ended = self.attend(client, backbone, &clock, is_same_run, listens).await;
+        let reason = self.attend(client, backbone, &clock, is_same_run, listens).await;
         self.recorder.disconnected();
-        Err(Lost { reason: ended, was_there: true })
+        Ok(reason)
     }
 
     /// Listens to Capture, compares clocks, and passes requests on, until one of these three fails.
@@ -148,23 +150,14 @@ impl Follower {
         let _ = self.news.send(news).await;
     }
 
-    async fn tell_lost(&mut self, lost: &Lost) {
-        if lost.was_there {
-            let reason = match lost.reason.kind() {
-                io::ErrorKind::UnexpectedEof | io::ErrorKind::ConnectionReset => "Pupil Capture ended".to_string(),
-                io::ErrorKind::TimedOut => "Pupil Capture does not answer".to_string(),
-                _ => format!("Pupil Capture: {}", lost.reason),
-            };
-            self.tell(TrackerMessage::Lost(reason)).await;
-        }
+    async fn tell_lost(&mut self, reason: &io::Error) {
+        let words = match reason.kind() {
+            io::ErrorKind::UnexpectedEof | io::ErrorKind::ConnectionReset => "Pupil Capture ended".to_string(),
+            io::ErrorKind::TimedOut => "Pupil Capture does not answer".to_string(),
+            _ => format!("Pupil Capture: {reason}"),
+        };
+        self.tell(TrackerMessage::Lost(words)).await;
     }
-}
-
-/// Loss of the connection to Capture, or failure to connect.
-struct Lost {
-    reason: io::Error,
-    /// Whether Capture had been connected before the loss.
-    was_there: bool,
 }
 
 fn port_of(answer: &str) -> io::Result<u16> {

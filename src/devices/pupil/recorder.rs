@@ -120,11 +120,8 @@ impl CaptureRecordingControl {
 
     /// Stores a request of the session until Capture is connected.
     pub fn queue(&mut self, request: CaptureRequest) {
-        let is_stop = matches!(request, CaptureRequest::StopRecording);
         self.waiting.push_back(request);
-        if is_stop {
-            self.drop_missed();
-        }
+        self.drop_missed();
     }
 
     /// Drops what waits up to the last stop request: events before a stop request that could not be sent are in no
@@ -154,8 +151,7 @@ impl CaptureRecordingControl {
             Some(name) => self.start(name, now, &mut actions),
             None => self.resume(now),
         }
-        self.go_on(now, &mut actions);
-        actions
+        self.go_on(now, actions)
     }
 
     /// Handles the loss of the connection to Capture.
@@ -165,17 +161,13 @@ impl CaptureRecordingControl {
 
     pub fn order(&mut self, request: CaptureRequest, now: Instant) -> Vec<CaptureAction> {
         self.waiting.push_back(request);
-        let mut actions = Vec::new();
-        self.go_on(now, &mut actions);
-        actions
+        self.go_on(now, Vec::new())
     }
 
     /// Handles that Capture's annotation plugin listens from now on.
     pub fn listens(&mut self, now: Instant) -> Vec<CaptureAction> {
         self.listens_by = None;
-        let mut actions = Vec::new();
-        self.go_on(now, &mut actions);
-        actions
+        self.go_on(now, Vec::new())
     }
 
     pub fn heard(&mut self, news: CaptureNotification, now: Instant) -> Vec<CaptureAction> {
@@ -207,8 +199,7 @@ impl CaptureRecordingControl {
             }
             CaptureNotification::Stopped => self.may_go_on = false,
         }
-        self.go_on(now, &mut actions);
-        actions
+        self.go_on(now, actions)
     }
 
     /// Whether a Capture recording that this program requested may still begin, later than it should have.
@@ -246,8 +237,7 @@ impl CaptureRecordingControl {
             Some(Hold::Ending(by)) if by <= now => self.stop(&mut actions),
             _ => {}
         }
-        self.go_on(now, &mut actions);
-        actions
+        self.go_on(now, actions)
     }
 
     fn is_not_ours(&mut self, now: Instant, actions: &mut Vec<CaptureAction>) {
@@ -286,20 +276,18 @@ impl CaptureRecordingControl {
 
     pub fn stop_answered(&mut self, now: Instant) -> Vec<CaptureAction> {
         (self.hold, self.owner, self.since) = (None, RecordingOwner::Nobody, None);
-        let mut actions = Vec::new();
-        self.go_on(now, &mut actions);
-        actions
+        self.go_on(now, Vec::new())
     }
 
-    /// Carries out waiting requests to Capture until one has to wait.
-    fn go_on(&mut self, now: Instant, actions: &mut Vec<CaptureAction>) {
+    /// Carries out waiting requests to Capture until one has to wait, after these actions.
+    fn go_on(&mut self, now: Instant, mut actions: Vec<CaptureAction>) -> Vec<CaptureAction> {
         while self.hold.is_none() && self.listens_by.is_none() {
             match self.waiting.pop_front() {
-                None => return,
+                None => break,
                 Some(CaptureRequest::Record { name, goes_on }) if self.records => {
                     (self.owner, self.since, self.may_go_on) = (RecordingOwner::Nobody, None, goes_on);
                     self.wanted = Some(name.clone());
-                    self.start(name, now, actions);
+                    self.start(name, now, &mut actions);
                 }
                 Some(CaptureRequest::Record { .. }) => {}
                 Some(CaptureRequest::StopRecording) => {
@@ -316,5 +304,6 @@ impl CaptureRecordingControl {
                 Some(CaptureRequest::Report(to)) => actions.push(CaptureAction::Report(to)),
             }
         }
+        actions
     }
 }

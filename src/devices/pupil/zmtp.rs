@@ -24,7 +24,8 @@ const LONG: u8 = 2;
 const COMMAND: u8 = 4;
 
 /// Role of a ZeroMQ socket.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::IntoStaticStr)]
+#[strum(serialize_all = "UPPERCASE")]
 pub enum SocketRole {
     /// Request socket of ZeroMQ: sends requests and receives replies.
     Req,
@@ -32,16 +33,6 @@ pub enum SocketRole {
     Sub,
     /// Publisher socket of ZeroMQ: sends messages to subscribers.
     Pub,
-}
-
-impl SocketRole {
-    fn name(self) -> &'static str {
-        match self {
-            SocketRole::Req => "REQ",
-            SocketRole::Sub => "SUB",
-            SocketRole::Pub => "PUB",
-        }
-    }
 }
 
 fn broken(what: &str) -> io::Error {
@@ -94,16 +85,11 @@ impl ZmtpFrameAssembler {
         if flags & !(MORE | LONG | COMMAND) != 0 {
             return Err(broken("a frame of another protocol"));
         }
-        let (length, head) = match flags & LONG != 0 {
-            false => match left.get(1) {
-                Some(&length) => (u64::from(length), 2),
-                None => return Ok(None),
-            },
-            true => match left.get(1..9).and_then(|bytes| bytes.try_into().ok()) {
-                Some(bytes) => (u64::from_be_bytes(bytes), 9),
-                None => return Ok(None),
-            },
+        let sized = match flags & LONG != 0 {
+            false => left.get(1).map(|length| (u64::from(*length), 2)),
+            true => left[1..].first_chunk().map(|bytes| (u64::from_be_bytes(*bytes), 9)),
         };
+        let Some((length, head)) = sized else { return Ok(None) };
         let length = usize::try_from(length).ok().filter(|&length| length <= MAX_MESSAGE);
         let length = length.ok_or_else(|| broken("a frame that is too large"))?;
         let Some(body) = left.get(head..head + length) else { return Ok(None) };
@@ -147,23 +133,19 @@ impl ZmtpConnection {
             return Err(broken("a server that asks for passwords"));
         }
         let mut ready = b"\x05READY".to_vec();
-        ready.extend(property("Socket-Type", role.name()));
+        ready.extend(property("Socket-Type", role.into()));
         if role == SocketRole::Req {
             ready.extend(property("Identity", ""));
         }
         stream.write_all(&[&[COMMAND, ready.len() as u8], ready.as_slice()].concat()).await?;
         let mut connection = ZmtpConnection { stream, inbox: ZmtpFrameAssembler::default(), chunk: vec![0; 1 << 16] };
         // The READY command of the other side comes before anything else.
-        let flags = loop {
+        loop {
             match connection.inbox.next_frame()? {
-                Some((flags, body)) if body.starts_with(b"\x05READY") => break flags,
+                Some((flags, body)) if body.starts_with(b"\x05READY") && flags & COMMAND != 0 => return Ok(connection),
                 Some(_) => return Err(broken("a server that refuses")),
                 None => connection.fill().await?,
             }
-        };
-        match flags & COMMAND != 0 {
-            true => Ok(connection),
-            false => Err(broken("a server that does not get ready")),
         }
     }
 

@@ -284,7 +284,7 @@ fn page(lane: &ShownRecording, name: &str, entity: &str) -> ContainerLike {
 }
 
 fn now(lane: &ShownRecording) -> ContainerLike {
-    page(lane, "At this moment", "human/now")
+    page(lane, "At this moment (scrolls)", "human/now")
 }
 
 fn about(lane: &ShownRecording) -> ContainerLike {

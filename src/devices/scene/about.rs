@@ -45,7 +45,7 @@ participant's own: only simulated participants record it.
 
 **P(truth)**: lines are the estimate, at a press first that before it, then that after it; \u{25c6} is what a simulated \
 participant believes itself before a press, crosses at 0 are errors. A line is of a belief that is wrong \
-for a second: from when it turned wrong (drawn after that second) until it is known (95 %); at most six at a time.
+for a second: from when it turned wrong (drawn after that second) until it is known (95 %).
 
 **Gaze**: the circle is the newest gaze with the area that can be read, large dots are the last 0.5 s, small ones the last \
 1.5 s. Grey dots are uncertain: the eye tracker's confidence is too low, and the estimate does not use them.

@@ -1,7 +1,9 @@
 //! Entities of beliefs: curves and lanes of what is believed wrong, and the page that tells in words what was pressed,
 //! shown and believed.
 
-use super::entity_content::{self, CURVES, EntityData, EntityUpdate, MarkShape, SceneLogLevel, SeriesStyle, slug};
+use super::entity_content::{
+    self, CURVES, EntityData, EntityUpdate, MarkShape, SceneColour, SceneLogLevel, SeriesStyle, slug,
+};
 use super::happenings::{self, JudgedPressShown};
 use super::{SceneInputs, SceneUpdate, moment_on_clock};
 use tomcom_core::base::time::SessionTime;
@@ -10,8 +12,9 @@ use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_core::mind::{RecordedBelief, RecordedEstimate};
 use tomcom_session::follower::SessionFollower;
+use tomcom_session::history::false_beliefs::EstimatedFalseBelief;
 use tomcom_session::history::wording;
-use tomcom_session::{Event, Session, TimelineEntry, TimelineEvent, TimestampedEvent, TrialPhase};
+use tomcom_session::{Event, Session, TimelineEntry, TimelineEvent, TimestampedEvent};
 
 /// Period of updates of the belief estimate between presses, in nanoseconds.
 const EVERY_NS: u64 = 200_000_000;
@@ -19,9 +22,6 @@ const EVERY_NS: u64 = 200_000_000;
 const KNOWN: f64 = 0.95;
 /// A belief that is false for so long gets a curve, which begins where it turned false.
 const LASTING: SessionTime = SessionTime(1_000_000_000);
-/// For so long after its end a curve keeps its colour for itself, if there are enough colours: then no view of the plot shows
-/// two curves of one colour.
-const APART: SessionTime = SessionTime(60_000_000_000);
 /// Path of the page in words.
 const PAGE: &str = "human/now";
 /// Path of the lane with the human's errors, each until the next press.
@@ -40,15 +40,14 @@ struct Held {
     p_truth: f64,
 }
 
-/// A curve of the plot, which has the colour of its place among the curves.
-#[derive(Clone, Copy, Debug)]
+/// The curve of one state aspect: of what is believed wrong for a while, until it is known.
+#[derive(Clone, Debug, Default)]
 struct BeliefCurve {
-    aspect: usize,
-    /// Whether it goes on, and when something was drawn last.
     is_open: bool,
-    last: SessionTime,
-    /// Until when the colour is another curve's; `None` if it was nobody's before.
-    taken: Option<SessionTime>,
+    /// When the last false belief began that it shows or showed.
+    drawn: Option<SessionTime>,
+    /// Before it begins: the rows of the last time before the belief turned false, and all since.
+    past: Vec<SceneUpdate>,
 }
 
 /// State of the Rerun entities that show beliefs.
@@ -57,14 +56,12 @@ pub struct BeliefScene {
     tick: Option<u64>,
     /// For each state aspect, when the false belief began whose bar is drawn.
     drawn_since: Vec<Option<SessionTime>>,
-    /// The curves of the plot: of what is believed wrong for a while, until it is known.
-    curves: [Option<BeliefCurve>; entity_content::CURVES.len()],
-    /// For each state aspect without a curve that goes on, the rows of the last time before its belief turned false, and all
-    /// since: a curve has them once it begins.
-    past: Vec<Vec<SceneUpdate>>,
-    /// Those of curves that have just begun.
+    curves: Vec<BeliefCurve>,
+    /// Past rows of curves that have just begun.
     pub begun: Vec<SceneUpdate>,
-    /// For each state aspect, since which press the simulated participant believes what it believes wrong.
+    /// When the simulated participant's beliefs were told last.
+    own_at: SessionTime,
+    /// For each state aspect, what the simulated participant believes wrong, and the last time at which it did not.
     own_since: Vec<Option<(usize, SessionTime)>>,
     /// What the simulated participant believes wrong before its next press, in words.
     own: String,
@@ -98,26 +95,17 @@ fn wrong(aspect: &str) -> String {
     format!("{WRONG_BELIEFS}{}", slug(aspect))
 }
 
-/// Entity updates that give an aspect's curve and marks the colour of this place.
-fn coloured(aspect: &str, nth: usize) -> [EntityUpdate; 2] {
-    let style = SeriesStyle { name: None, colour: Some(CURVES[nth]) };
-    [
-        EntityUpdate::new(estimated(aspect), EntityData::Line(style.clone())),
-        EntityUpdate::new(held_truly(aspect), EntityData::Marks(style, MarkShape::Diamond)),
-    ]
-}
-
 /// Entity updates with the names and colours of the curves and marks.
 pub fn fixed_beliefs(kitchen: &Kitchen) -> Vec<EntityUpdate> {
-    let of_aspect = |aspect: &StateAspect| {
+    let of_aspect = |(aspect, colour): (&StateAspect, SceneColour)| {
         // The marks of the participant's own belief have the colour and name of the curve: one line of the legend.
-        let series = SeriesStyle { name: Some(wording::location(&aspect.name)), colour: None };
+        let series = SeriesStyle { name: wording::location(&aspect.name), colour };
         [
             EntityUpdate::new(estimated(&aspect.name), EntityData::Line(series.clone())),
             EntityUpdate::new(held_truly(&aspect.name), EntityData::Marks(series, MarkShape::Diamond)),
         ]
     };
-    kitchen.aspects.iter().flat_map(of_aspect).collect()
+    kitchen.aspects.iter().zip(CURVES.into_iter().cycle()).flat_map(of_aspect).collect()
 }
 
 impl BeliefScene {
@@ -275,61 +263,43 @@ impl BeliefScene {
         was_error.then(|| EntityUpdate::new(ERRORS, EntityData::State(String::new(), entity_content::ERROR)))
     }
 
-    /// The place of an aspect's curve, and whether it is new; `None` if a curve of each colour goes on.
-    fn curve(&mut self, aspect: usize, now: SessionTime) -> Option<(usize, bool)> {
-        let is_its = |curve: &Option<BeliefCurve>| curve.is_some_and(|curve| curve.aspect == aspect);
-        if let Some(nth) = self.curves.iter().position(is_its) {
-            return Some((nth, false));
-        }
-        // A colour of a minute ago is in no view with the new one; without such, that of the curve that ended first.
-        let is_apart = |curve: &BeliefCurve| !curve.is_open && now - curve.last > APART;
-        let apart = self.curves.iter().position(|curve| curve.as_ref().is_none_or(is_apart));
-        let ended =
-            self.curves.iter().enumerate().filter_map(|(nth, curve)| Some((nth, curve.filter(|it| !it.is_open)?)));
-        let nth = apart.or_else(|| ended.min_by_key(|(_, curve)| curve.last).map(|(nth, _)| nth))?;
-        let taken = self.curves[nth].map(|curve| curve.last);
-        self.curves[nth] = Some(BeliefCurve { aspect, is_open: false, last: now, taken });
-        Some((nth, true))
-    }
-
     /// Rows of the curves: of aspects that are believed wrong for a while, until they are known.
     fn drawn(&mut self, session: &Session, step: u64, held: &[Held], follower: &SessionFollower) -> Vec<EntityUpdate> {
         let kitchen = &session.kitchen;
         let mut rows = Vec::new();
         let now = session.time;
-        let is_trial = matches!(session.phase, TrialPhase::Running | TrialPhase::Paused);
-        self.past.resize(kitchen.aspects.len(), Vec::new());
-        for one in held {
-            let name = &kitchen.aspects[one.aspect].name;
-            let value = EntityUpdate::new(estimated(name), EntityData::Value(one.p_truth));
+        self.curves.resize(kitchen.aspects.len(), BeliefCurve::default());
+        for (one, curve) in held.iter().zip(&mut self.curves) {
+            let entity = estimated(&kitchen.aspects[one.aspect].name);
+            let value = EntityUpdate::new(&entity, EntityData::Value(one.p_truth));
             let moment = SceneUpdate { time: now, trial: session.trial_clock(now), step, rows: vec![value.clone()] };
-            let was_open = self.curves.iter().flatten().any(|curve| curve.aspect == one.aspect && curve.is_open);
-            let is_wrong = is_trial && one.p_truth < FALSE_BELOW;
-            let is_false = follower.false_beliefs.at(AspectId(one.aspect as u8), now);
-            let lasts = is_wrong && is_false.is_some_and(|held| now - held.began >= LASTING);
-            if !is_wrong {
-                // A press has two rows.
-                self.past[one.aspect].retain(|moment| moment.time == now);
+            let (aspect, is_wrong) = (AspectId(one.aspect as u8), one.p_truth < FALSE_BELOW);
+            let present = follower.false_beliefs.until(aspect, now);
+            if curve.is_open {
+                curve.drawn = present.filter(|_| is_wrong).map(|held| held.began).or(curve.drawn);
+            } else {
+                // Also one that is over: nothing may have been drawn between its first second and its end.
+                let lasts = |held: &&EstimatedFalseBelief| {
+                    let until = held.ended.map_or(now, |ended| ended.min(now));
+                    held.aspect == aspect && until - held.began >= LASTING
+                };
+                let is_new = |held: &&EstimatedFalseBelief| curve.drawn.is_none_or(|drawn| held.began > drawn);
+                let Some(lasting) = follower.false_beliefs.all().rev().take_while(is_new).find(lasts) else {
+                    if present.is_none() || !is_wrong {
+                        // A press has two rows.
+                        curve.past.retain(|moment| moment.time == now);
+                    }
+                    curve.past.push(moment);
+                    continue;
+                };
+                curve.drawn = Some(lasting.began);
+                self.begun.append(&mut curve.past);
             }
-            if !was_open && !lasts {
-                self.past[one.aspect].push(moment);
-                continue;
-            }
-            let mut past = std::mem::take(&mut self.past[one.aspect]);
-            let Some((nth, _)) = self.curve(one.aspect, now) else { continue };
-            let Some(curve) = &mut self.curves[nth] else { continue };
-            if !was_open {
-                past.retain(|moment| curve.taken.is_none_or(|taken| moment.time > taken));
-                // The colour holds from the first row on, also if marks had it from a later one on.
-                let first = past.first_mut().map_or(&mut rows, |first| &mut first.rows);
-                first.splice(0..0, coloured(name, nth));
-                self.begun.extend(past);
-            }
-            (curve.is_open, curve.last) = (one.p_truth < KNOWN, now);
+            curve.is_open = one.p_truth < KNOWN;
             rows.push(value);
             if !curve.is_open {
-                rows.push(EntityUpdate::new(estimated(name), EntityData::NoValue));
-                self.past[one.aspect].push(moment);
+                rows.push(EntityUpdate::new(entity, EntityData::NoValue));
+                curve.past.push(moment);
             }
         }
         rows
@@ -340,30 +310,23 @@ impl BeliefScene {
         let kitchen = &session.kitchen;
         let told = witness.aspects.iter().map(|told| (told.believes.as_str(), told.p_truth));
         let held = recorded(kitchen, session.state, told);
-        let now = session.time;
+        let before = std::mem::replace(&mut self.own_at, session.time);
         self.own_since.resize(held.len(), None);
         for (one, since) in held.iter().zip(&mut self.own_since) {
-            let began = since.take().filter(|(thinks, _)| *thinks == one.thinks).map_or(now, |(_, began)| began);
+            let began = since.take().filter(|(thinks, _)| *thinks == one.thinks).map_or(before, |(_, began)| began);
             *since = (one.p_truth < FALSE_BELOW).then_some((one.thinks, began));
         }
         let since = |aspect: AspectId| {
-            let began = self.own_since[aspect.index()].as_ref()?.1;
-            let at = moment_on_clock(session.trial_clock_at(began));
-            Some(if began == now { at } else { format!("its press at {at} at least") })
+            let (_, began) = self.own_since[aspect.index()]?;
+            Some(format!("{} at the earliest", moment_on_clock(session.trial_clock_at(began))))
         };
         let wrong = believed(kitchen, session.state, &held, since);
         self.own = titled("Believed wrong before it, by the simulated participant", &wrong);
-        let mut rows = Vec::new();
-        for one in held.iter().filter(|one| one.p_truth < FALSE_BELOW) {
-            let Some((nth, is_new)) = self.curve(one.aspect, now) else { continue };
-            let name = &kitchen.aspects[one.aspect].name;
-            if is_new {
-                rows.extend(coloured(name, nth));
-            }
-            rows.push(EntityUpdate::new(held_truly(name), EntityData::Value(one.p_truth)));
-            self.curves[nth].iter_mut().for_each(|curve| curve.last = now);
-        }
-        rows
+        let wrong = held.iter().filter(|one| one.p_truth < FALSE_BELOW);
+        let mark = |one: &Held| {
+            EntityUpdate::new(held_truly(&kitchen.aspects[one.aspect].name), EntityData::Value(one.p_truth))
+        };
+        wrong.map(mark).collect()
     }
 
     fn page(&self) -> String {

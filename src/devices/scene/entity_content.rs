@@ -99,16 +99,15 @@ pub struct ScenePoint {
     pub colour: SceneColour,
 }
 
-/// Name and colour of a time series; what is `None` stays as it is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SeriesStyle {
-    pub name: Option<String>,
-    pub colour: Option<SceneColour>,
+    pub name: String,
+    pub colour: SceneColour,
 }
 
 impl SeriesStyle {
     pub fn new(name: impl Into<String>, colour: SceneColour) -> SeriesStyle {
-        SeriesStyle { name: Some(name.into()), colour: Some(colour) }
+        SeriesStyle { name: name.into(), colour }
     }
 }
 
@@ -175,14 +174,24 @@ pub fn agent_colour(agent: Agent) -> SceneColour {
     }
 }
 
-/// Colours of the curves of one plot.
-pub const CURVES: [SceneColour; 6] = [
+/// Colours of the curves of one plot: as many as the sushi kitchen has places and recipes.
+pub const CURVES: [SceneColour; 16] = [
     [63, 108, 255, 255],
     [179, 101, 43, 255],
     [68, 137, 8, 255],
     [229, 22, 136, 255],
     [8, 135, 129, 255],
     [160, 85, 216, 255],
+    [30, 150, 210, 255],
+    [150, 150, 60, 255],
+    [255, 15, 255, 255],
+    [150, 60, 105, 255],
+    [120, 15, 240, 255],
+    [45, 90, 165, 255],
+    [105, 90, 30, 255],
+    [165, 135, 165, 255],
+    [120, 105, 135, 255],
+    [180, 15, 165, 255],
 ];
 
 #[cfg(test)]
@@ -190,14 +199,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn texts_can_be_read_on_black_and_on_white() {
+    fn texts_and_curves_can_be_seen_on_black_and_on_white() {
         let named = [FRAME, CONTENT, HUMAN, ROBOT, SIGNAL, GAZE, ERROR, FALSE, QUIET];
-        for colour in named.into_iter().chain(CURVES) {
+        let texts = named.into_iter().map(|colour| (colour, 4.0));
+        for (colour, least) in texts.chain(CURVES.map(|colour| (colour, 3.0))) {
             let light = |part: u8| ((f64::from(part) / 255.0 + 0.055) / 1.055).powf(2.4);
             let [red, green, blue, _] = colour.map(light);
             let luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
             let [on_black, on_white] = [(luminance + 0.05) / 0.05, 1.05 / (luminance + 0.05)];
-            assert!(on_black > 4.0 && on_white > 4.0, "{colour:?}: {on_black:.1}, {on_white:.1}");
+            assert!(on_black > least && on_white > least, "{colour:?}: {on_black:.1}, {on_white:.1}");
         }
     }
 }

@@ -27,6 +27,9 @@ const SENT_MARKS: &str = "assistant/benefit/sent";
 /// Path of the page of all signals, and its text without any.
 const SIGNAL_PAGE: &str = "signals/page";
 const NO_SIGNAL: &str = "No signal was shown.";
+/// Number of signals on the page while the trial runs. The page is written whole after each signal: a page of all of them
+/// would let a stream grow with the square of their number.
+const NEWEST: usize = 30;
 /// Path of the entity with all lines of the text log.
 const HAPPENED: &str = "happened";
 /// Largest number of characters of a line of the text log, which the viewer would cut at the edge of its view.
@@ -48,8 +51,8 @@ pub fn fixed(session: &Session) -> Vec<EntityUpdate> {
         .map(|((_, signal), colour)| line(benefit(signal), wording::signal(signal), colour))
         .collect();
     let worth = match assistant.concept.name().unit() {
-        BenefitUnit::Deviation => format!("above the threshold {}", assistant.price()),
-        BenefitUnit::Presses | BenefitUnit::None => format!("worth its {} presses above", assistant.price()),
+        BenefitUnit::Deviation => format!("0: the threshold of {}", assistant.price()),
+        BenefitUnit::Presses | BenefitUnit::None => format!("0: saves its cost of {} presses", assistant.price()),
     };
     rows.push(line(COST_LINE.to_string(), worth, entity_content::SIGNAL));
     let marks = SeriesStyle::new("errors", entity_content::ERROR);
@@ -185,10 +188,10 @@ impl JudgedPressShown<'_> {
 }
 
 /// The judgement of the press in this event, if it is one that counts.
-pub fn judged<'a>(stamped: &TimestampedEvent, judged: &'a [JudgedPress]) -> Option<JudgedPressShown<'a>> {
-    let index = judged.binary_search_by_key(&stamped.seq, |press| press.seq).ok()?;
-    let number = judged[..=index].iter().filter(|press| press.verdict.error).count();
-    Some(JudgedPressShown { number, press: &judged[index] })
+pub fn judged<'a>(stamped: &TimestampedEvent, follower: &'a SessionFollower) -> Option<JudgedPressShown<'a>> {
+    let (index, press) = follower.judgement(stamped.seq)?;
+    let number = follower.judged[..=index].iter().filter(|press| press.verdict.error).count();
+    Some(JudgedPressShown { number, press })
 }
 
 /// The line at the cost of communication, which is known before any advice.
@@ -294,7 +297,7 @@ impl SignalScene {
     }
 }
 
-/// The page of the signals, the first so many of which are over.
+/// The page of the signals, the first so many of which are over: after the trial of all, before of the newest.
 fn signal_page(follower: &SessionFollower, over: usize) -> String {
     let (session, verdicts) = (&follower.session, signal_verdicts(follower));
     let told = |(nth, shown): (usize, &ShownSignalRecord)| {
@@ -304,10 +307,14 @@ fn signal_page(follower: &SessionFollower, over: usize) -> String {
         let became: String = became.iter().filter(|part| !part.is_empty()).map(|part| format!("- {part}\n")).collect();
         format!("**{}**, {at}: {}\n\n{became}\n\n", nth + 1, signal_words::sent(follower, shown).join("; "))
     };
-    match follower.signals.shown.as_slice() {
-        [] => NO_SIGNAL.to_string(),
-        shown => shown.iter().enumerate().map(told).collect(),
-    }
+    let shown = &follower.signals.shown;
+    let earlier = if session.is_trial_over() { 0 } else { shown.len().saturating_sub(NEWEST) };
+    let first = match earlier {
+        _ if shown.is_empty() => NO_SIGNAL.to_string(),
+        0 => String::new(),
+        _ => format!("Signals 1 to {earlier} are told after the trial, and in the log.\n\n"),
+    };
+    first + &shown.iter().enumerate().skip(earlier).map(told).collect::<String>()
 }
 
 /// What the assistant recommends, in words; empty if it recommends nothing.

@@ -35,7 +35,7 @@ use tomcom_session::follower::SessionFollower;
 use tomcom_session::{Event, Session, TimestampedEvent, apply};
 
 /// Version of the scene's content and layout. A stream with another version is rebuilt from the log.
-pub const VERSION: u32 = 12;
+pub const VERSION: u32 = 13;
 
 /// A time on the trial's clock, in minutes, seconds and tenths. As on the console's clock, what is smaller is left out.
 pub fn moment_on_clock(time: SessionTime) -> String {
@@ -173,7 +173,7 @@ impl SessionScene {
             Event::MarkerWorded { note, .. } if !note.is_empty() => rows.push(happenings::mark_worded(session, note)),
             _ => {}
         }
-        let pressed = happenings::judged(stamped, &inputs.follower.judged);
+        let pressed = happenings::judged(stamped, inputs.follower);
         let new = &session.timeline[self.told..];
         if pressed.is_some() {
             rows.extend(self.looks.pressed(session));

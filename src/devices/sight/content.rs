@@ -75,7 +75,7 @@ pub enum RobotActivity {
     WaitsOrder,
     /// For a while, whatever the human does: somebody holds it, or it leaves out what it would press.
     Waits,
-    /// It moves at reduced speed.
+    /// It moves at reduced speed, for safety.
     Slow,
     /// Until the wizard releases it.
     Stopped,
@@ -213,6 +213,7 @@ fn stage(session: &Session) -> DisplayStage {
         TrialPhase::Running => DisplayStage::Running,
         TrialPhase::Paused => DisplayStage::Paused,
         TrialPhase::Over(_) => DisplayStage::Over,
+        TrialPhase::Closed if is_to_come_back(session) => return DisplayStage::Over,
         TrialPhase::Closed => return DisplayStage::Thanks,
     };
     match (session.protocol.is_some(), session.study_phase()) {
@@ -229,6 +230,13 @@ fn stage(session: &Session) -> DisplayStage {
         }
         (true, Some(PhaseSpec::Debriefing { .. })) => DisplayStage::Thanks,
     }
+}
+
+/// Whether the plan has more for the participant of a session that is closed: another trial, or the rest of this one.
+fn is_to_come_back(session: &Session) -> bool {
+    let Some((step, _)) = session.step() else { return false };
+    let is_debriefed = matches!(session.study_phase(), Some(PhaseSpec::Debriefing { .. }));
+    step.period != Some(step.periods) || session.aborted.is_some() || session.ended_early && !is_debriefed
 }
 
 pub(super) fn shown(kitchen: &Kitchen, state: State, location: LocationId) -> ShownContent {

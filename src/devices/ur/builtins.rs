@@ -3,8 +3,8 @@
 use tomcom_core::robot::JOINTS;
 
 use super::controller::{INPUTS, Level, REGISTERS, SimulatedController, Watchdog, WatchdogAction};
-use super::motion::{Motion, Path, inverse, isometry, six, tcp};
-use super::program::{Arguments, Host, Outcome, Value, Wait};
+use super::motion::{Motion, Path, inverse, isometry, norm, six, tcp};
+use super::program::{Arguments, Outcome, Value, Wait};
 
 /// Default acceleration and speed of `movej` (radians) and `movel` (metres), and deceleration of a stop.
 const MOVEJ: [f64; 2] = [1.4, 1.05];
@@ -14,8 +14,9 @@ const LEAST_SLEEP_S: f64 = 0.001;
 /// Least time constant of `servoj`, in seconds.
 const LEAST_LOOKAHEAD_S: f64 = 0.03;
 
-impl Host for SimulatedController {
-    fn call(&mut self, name: &str, arguments: &Arguments) -> Option<Result<Outcome, String>> {
+impl SimulatedController {
+    /// Calls a function; `None` if there is none of this name.
+    pub(super) fn call(&mut self, name: &str, arguments: &Arguments) -> Option<Result<Outcome, String>> {
         let found = match name {
             "movej" | "movel" => self.move_along(name, arguments),
             "servoj" => self.servo(arguments),
@@ -39,19 +40,12 @@ impl Host for SimulatedController {
         };
         Some(found)
     }
-}
 
-impl SimulatedController {
     fn move_along(&mut self, name: &str, arguments: &Arguments) -> Result<Outcome, String> {
-        arguments.are_among(if name == "movej" {
-            &["q", "a", "v", "t", "r"]
-        } else {
-            &["pose", "a", "v", "t", "r"]
-        })?;
-        let is_pose = |value: &Value| matches!(value, Value::Pose(_));
         let (first, [acceleration, speed]) = if name == "movej" { ("q", MOVEJ) } else { ("pose", MOVEL) };
+        arguments.are_among(&[first, "a", "v", "t", "r"])?;
         let goal = arguments.six(first, 0)?;
-        let given_pose = arguments.get(first, 0).is_some_and(is_pose);
+        let given_pose = matches!(arguments.get(first, 0), Some(Value::Pose(_)));
         let [a, v] = [arguments.number_or("a", 1, acceleration)?, arguments.number_or("v", 2, speed)?];
         let takes_s = arguments.number_or("t", 3, 0.0)?;
         if a <= 0.0 || v <= 0.0 || takes_s < 0.0 {
@@ -107,8 +101,7 @@ impl SimulatedController {
         }
         // Of a straight line, the leading joint slows down as the tool does.
         let leading = self.command.speeds.iter().map(|speed| speed.abs()).fold(0.0, f64::max);
-        let [x, y, z, ..] = self.tcp_speed(&self.command.angles, &self.command.speeds);
-        let tool_m_s = (x * x + y * y + z * z).sqrt();
+        let tool_m_s = norm(&self.tcp_speed(&self.command.angles, &self.command.speeds)[..3]);
         let deceleration = if name == "stopl" && tool_m_s > 1e-3 { a * leading / tool_m_s } else { a };
         self.command.stop(deceleration);
         Ok(Outcome::Waits(Wait::Motion))
@@ -150,17 +143,14 @@ impl SimulatedController {
             _ => name.strip_suffix("_register").or_else(|| name.strip_suffix("_reg"))?,
         };
         let number = || place(arguments, "address", 0, REGISTERS);
+        let bit = || place(arguments, "address", 0, 128);
         Some(match short {
             "read_input_integer" => number().map(|at| value(f64::from(self.inputs.integers[at]))),
             "read_input_float" => number().map(|at| value(self.inputs.doubles[at])),
-            "read_input_boolean" => {
-                place(arguments, "address", 0, 128).map(|at| truth(self.inputs.bits >> at & 1 == 1))
-            }
+            "read_input_boolean" => bit().map(|at| truth(self.inputs.bits >> at & 1 == 1)),
             "read_output_integer" => number().map(|at| value(f64::from(self.outputs.integers[at]))),
             "read_output_float" => number().map(|at| value(self.outputs.doubles[at])),
-            "read_output_boolean" => {
-                place(arguments, "address", 0, 128).map(|at| truth(self.outputs.bits >> at & 1 == 1))
-            }
+            "read_output_boolean" => bit().map(|at| truth(self.outputs.bits >> at & 1 == 1)),
             "write_output_integer" => number().and_then(|at| {
                 self.outputs.integers[at] = arguments.number("value", 1)? as i32;
                 Ok(Outcome::Nothing)
@@ -169,7 +159,7 @@ impl SimulatedController {
                 self.outputs.doubles[at] = arguments.number("value", 1)?;
                 Ok(Outcome::Nothing)
             }),
-            "write_output_boolean" => place(arguments, "address", 0, 128).and_then(|at| {
+            "write_output_boolean" => bit().and_then(|at| {
                 self.outputs.set_bit(at, arguments.truth("value", 1)?);
                 Ok(Outcome::Nothing)
             }),
@@ -211,20 +201,14 @@ impl SimulatedController {
             "get_actual_tcp_pose" => Outcome::Value(Value::Pose(six(&tcp(&self.arm, &arm.actual)))),
             "get_target_tcp_pose" => Outcome::Value(Value::Pose(six(&tcp(&self.arm, &self.command.angles)))),
             "get_actual_tcp_speed" => Outcome::Value(Value::list(&self.tcp_speed(&arm.actual, &arm.actual_speeds))),
-            "get_tcp_force" => {
-                let [x, y, z] = arm.force_n;
-                Outcome::Value(Value::list(&[x, y, z, 0.0, 0.0, 0.0]))
-            }
-            "force" => value(arm.force_n.iter().map(|part| part * part).sum::<f64>().sqrt()),
+            "get_tcp_force" => Outcome::Value(Value::list(&arm.tcp_force())),
+            "force" => value(norm(&arm.force_n)),
             "get_steptime" => value(self.step_s()),
             "get_target_payload" => value(self.payload_kg),
             "is_steady" => truth(self.command.is_still()),
             "get_forward_kin" => {
-                let joints = if arguments.get("q", 0).is_some() { arguments.six("q", 0) } else { Ok(arm.actual) };
-                match joints {
-                    Ok(joints) => Outcome::Value(Value::Pose(six(&tcp(&self.arm, &joints)))),
-                    Err(found) => return Some(Err(found)),
-                }
+                let joints = arguments.six_or("q", 0, arm.actual);
+                return Some(joints.map(|joints| Outcome::Value(Value::Pose(six(&tcp(&self.arm, &joints))))));
             }
             "get_inverse_kin" => return Some(self.inverse_kin(arguments)),
             _ => return None,
@@ -232,7 +216,7 @@ impl SimulatedController {
     }
 
     fn inverse_kin(&self, arguments: &Arguments) -> Result<Outcome, String> {
-        let near = if arguments.get("qnear", 1).is_some() { arguments.six("qnear", 1)? } else { self.command.angles };
+        let near = arguments.six_or("qnear", 1, self.command.angles)?;
         let found = inverse(&self.arm, &isometry(arguments.six("x", 0)?), &near);
         found.map(|joints| Outcome::Value(Value::list(&joints))).ok_or_else(|| "the pose is out of reach".to_string())
     }
@@ -278,7 +262,7 @@ fn maths(name: &str, arguments: &Arguments) -> Option<Result<Outcome, String>> {
         "pow" => of_two(f64::powf),
         "norm" => Some(match arguments.get("a", 0) {
             Some(Value::Number(one)) => Ok(value(one.abs())),
-            _ => arguments.six("a", 0).map(|six| value(six.iter().map(|part| part * part).sum::<f64>().sqrt())),
+            _ => arguments.six("a", 0).map(|six| value(norm(&six))),
         }),
         "to_str" => Some(Ok(Outcome::Value(Value::Text(arguments.by_place.iter().map(Value::words).collect())))),
         "pose_trans" => Some(arguments.six("p_from", 0).and_then(|from| {

@@ -97,8 +97,6 @@ pub struct ArmInputs {
 /// What came from the controller.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ClientNews {
-    /// Major, minor, bugfix and build number of its software.
-    Version([u32; 4]),
     Reading(Box<ArmReading>),
     /// A warning or an error in its words.
     Message(String),
@@ -128,13 +126,11 @@ impl RtdeClient {
         let (mut send, mut news) = (Vec::new(), Vec::new());
         while let Some((kind, carried)) = self.packages.take_package()? {
             match kind {
-                b'V' if carried == [1] => send.extend(package(b'v', &[])),
-                b'V' => return Err(ClientFault::Version),
-                b'v' => {
-                    news.push(ClientNews::Version(version(&carried).ok_or(ClientFault::Content('v'))?));
+                b'V' if carried == [1] => {
                     let wanted = [&HERTZ.to_be_bytes()[..], OUTPUTS.join(",").as_bytes()].concat();
                     send.extend(package(b'O', &wanted));
                 }
+                b'V' => return Err(ClientFault::Version),
                 b'O' => {
                     self.outputs = kinds(&carried, &OUTPUTS.map(str::to_string), 'O')?;
                     send.extend(package(b'I', input_names().join(",").as_bytes()));
@@ -221,12 +217,6 @@ fn input_names() -> Vec<String> {
     [numbers("int", INTEGERS), numbers("double", DOUBLES)].concat()
 }
 
-fn version(carried: &[u8]) -> Option<[u32; 4]> {
-    let (numbers, rest) = carried.as_chunks::<4>();
-    let numbers: [[u8; 4]; 4] = numbers.try_into().ok()?;
-    rest.is_empty().then(|| numbers.map(u32::from_be_bytes))
-}
-
 /// The types of a recipe's variables, from the answer to its setup.
 fn kinds(carried: &[u8], names: &[String], letter: char) -> Result<Vec<Datum>, ClientFault> {
     let wrong = || ClientFault::Content(letter);
@@ -239,7 +229,7 @@ fn kinds(carried: &[u8], names: &[String], letter: char) -> Result<Vec<Datum>, C
             _ => {}
         }
     }
-    let found: Option<Vec<Datum>> = kinds.into_iter().map(Datum::of_kind).collect();
+    let found: Option<Vec<Datum>> = kinds.into_iter().map(|kind| kind.parse().ok()).collect();
     found.filter(|found| found.len() == names.len() && *recipe == 1).ok_or_else(wrong)
 }
 

@@ -24,7 +24,7 @@ pub const INPUTS: usize = 18;
 const POWERS_S: f64 = 1.0;
 const RELEASES_S: f64 = 1.0;
 /// Time after a protective stop before which it is not unlocked, in seconds, as in the manufacturer's controllers.
-pub const LOCKED_S: f64 = 5.0;
+const LOCKED_S: f64 = 5.0;
 /// Distance of the tip from a button's middle within which the tip touches the button, and its height above the button's
 /// top at which it may, in metres.
 const OVER_M: f64 = 0.02;
@@ -61,7 +61,8 @@ impl Series {
 }
 
 /// With the numbers of RTDE's `robot_mode`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, strum::Display)]
+#[strum(serialize_all = "SCREAMING_SNAKE_CASE")]
 pub enum RobotMode {
     Booting = 2,
     PowerOff = 3,
@@ -69,37 +70,18 @@ pub enum RobotMode {
     Running = 7,
 }
 
-impl RobotMode {
-    pub fn name(self) -> &'static str {
-        match self {
-            RobotMode::Booting => "BOOTING",
-            RobotMode::PowerOff => "POWER_OFF",
-            RobotMode::Idle => "IDLE",
-            RobotMode::Running => "RUNNING",
-        }
-    }
-}
-
 /// With the numbers of RTDE's `runtime_state`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::Display)]
+#[strum(serialize_all = "UPPERCASE")]
 pub enum ProgramState {
     Stopped = 1,
     Playing = 2,
     Paused = 4,
 }
 
-impl ProgramState {
-    pub fn name(self) -> &'static str {
-        match self {
-            ProgramState::Stopped => "STOPPED",
-            ProgramState::Playing => "PLAYING",
-            ProgramState::Paused => "PAUSED",
-        }
-    }
-}
-
 /// With the numbers of RTDE's text messages.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::Display)]
+#[strum(serialize_all = "lowercase")]
 pub enum Level {
     Error = 1,
     Warning = 2,
@@ -157,6 +139,14 @@ pub struct ArmState {
     pub target_speeds: JointAngles,
     /// The force of the surroundings on the tool, in newtons, in the controller's base frame.
     pub force_n: [f64; 3],
+}
+
+impl ArmState {
+    /// The force, and the torques, which the simulation does not have.
+    pub fn tcp_force(&self) -> [f64; 6] {
+        let [x, y, z] = self.force_n;
+        [x, y, z, 0.0, 0.0, 0.0]
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -411,11 +401,10 @@ impl SimulatedController {
             file.rsplit_once('.').map_or(file, |(stem, _)| stem).to_string()
         };
         let found = self.programs.keys().find(|name| stem(name) == stem(path)).cloned();
-        if found.is_some() {
-            self.stop_program("another program is loaded");
-            self.loaded = found;
-        }
-        self.loaded.is_some() && self.loaded.as_ref().is_some_and(|name| stem(name) == stem(path))
+        let Some(found) = found else { return false };
+        self.stop_program("another program is loaded");
+        self.loaded = Some(found);
+        true
     }
 
     pub fn loaded(&self) -> Option<&str> {
@@ -446,7 +435,7 @@ impl SimulatedController {
     /// Runs a script instead of the present program. Whether it begins; why not is a message.
     pub fn run_script(&mut self, text: &str) -> bool {
         if self.mode != RobotMode::Running || self.safety.is_stopped() {
-            let (mode, safety) = (self.mode.name(), self.safety.name());
+            let (mode, safety) = (self.mode, self.safety.name());
             self.tell(
                 Level::Error,
                 format!("the script does not run: the robot's mode is {mode}, its safety mode {safety}"),

@@ -1,13 +1,12 @@
 //! The dashboard server's commands: a line in, a line out.
 
-use tomcom_core::robot::SafetyMode;
-
 use super::controller::{Level, ProgramState, SimulatedController};
+use super::variables::safety_codes;
 
 /// What the server says to a new client.
 pub const GREETING: &str = "Connected: Universal Robots Dashboard Server";
-/// The serial number that the simulated controller says it has.
-pub const SERIAL: &str = "20175000001";
+/// What the server says before it closes a connection.
+pub const GOODBYE: &str = "Disconnected";
 /// Longest command, in bytes.
 pub const MOST_BYTES: usize = 4096;
 
@@ -40,12 +39,11 @@ pub fn answer(command: &str, controller: &mut SimulatedController) -> Option<Str
             controller.restart_safety();
             "Restarting safety".to_string()
         }
-        ("robotmode", _) => format!("Robotmode: {}", controller.mode().name()),
-        ("safetymode", _) => format!("Safetymode: {}", safety_name(controller.safety())),
-        ("safetystatus", _) => format!("Safetystatus: {}", safety_name(controller.safety())),
+        ("robotmode", _) => format!("Robotmode: {}", controller.mode()),
+        ("safetymode", _) => format!("Safetymode: {}", safety_codes(controller.safety()).0),
+        ("safetystatus", _) => format!("Safetystatus: {}", safety_codes(controller.safety()).0),
         ("programState", _) => {
-            let name = controller.program_name().unwrap_or("<unnamed>").to_string();
-            format!("{} {name}", controller.state().name())
+            format!("{} {}", controller.state(), controller.program_name().unwrap_or("<unnamed>"))
         }
         ("running", _) => format!("Program running: {}", controller.state() == ProgramState::Playing),
         ("play", _) => {
@@ -67,7 +65,7 @@ pub fn answer(command: &str, controller: &mut SimulatedController) -> Option<Str
         ("isProgramSaved", _) => format!("true {}", controller.loaded().unwrap_or("<unnamed>")),
         ("PolyscopeVersion", _) => format!("URSoftware {major}.{minor}.{bugfix}.{build} (simulated by tomcom)"),
         ("version", _) => format!("{major}.{minor}.{bugfix}.{build}"),
-        ("get serial number", _) => SERIAL.to_string(),
+        ("get serial number", _) => "20175000001".to_string(),
         ("get robot model", _) => "UR5".to_string(),
         ("is in remote control", _) => "true".to_string(),
         ("get operational mode", _) => "NONE".to_string(),
@@ -87,18 +85,4 @@ pub fn answer(command: &str, controller: &mut SimulatedController) -> Option<Str
         }
         _ => format!("could not understand: '{command}'"),
     })
-}
-
-/// What the server says before it closes a connection.
-pub const GOODBYE: &str = "Disconnected";
-
-fn safety_name(safety: SafetyMode) -> &'static str {
-    match safety {
-        SafetyMode::Normal => "NORMAL",
-        SafetyMode::Reduced => "REDUCED",
-        SafetyMode::ProtectiveStop => "PROTECTIVE_STOP",
-        SafetyMode::Safeguard => "SAFEGUARD_STOP",
-        SafetyMode::EmergencyStop => "ROBOT_EMERGENCY_STOP",
-        SafetyMode::Fault => "FAULT",
-    }
 }

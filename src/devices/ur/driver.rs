@@ -189,7 +189,7 @@ impl UrDriver {
         }
     }
 
-    /// The wizard confirms what the arm asks for in this stage.
+    /// The wizard confirms what the arm asks for in this stage, or lets it go on.
     pub fn confirm(&mut self, stage: ArmStage) {
         if stage != self.stage {
             return;
@@ -211,11 +211,6 @@ impl UrDriver {
             ArmStage::Stopped => self.resumes = Some((0.0, None)),
             ArmStage::Lost | ArmStage::Starts | ArmStage::DryRun | ArmStage::Ready => {}
         }
-    }
-
-    /// The wizard lets the robot go on.
-    pub fn resume(&mut self) {
-        self.confirm(ArmStage::Stopped);
     }
 
     /// The wizard stops the robot: a dry run ends. Other motions stand by their order.

@@ -41,7 +41,6 @@ enum ArmCommand {
     Begin,
     Order(ArmOrder),
     Confirm(ArmStage),
-    Resume,
     Stop,
 }
 
@@ -58,7 +57,7 @@ pub enum ArmNews {
 
 /// A running driver. It ends, and the arm stops by itself, when this and all its orders are dropped.
 pub struct UrConnection {
-    orders: ArmOrders,
+    pub orders: ArmOrders,
     news: mpsc::UnboundedReceiver<ArmNews>,
 }
 
@@ -81,7 +80,7 @@ impl ArmOrders {
     pub fn tell(&self, event: &Event) {
         match event {
             Event::RobotConfirmed { stage } => self.send(ArmCommand::Confirm(*stage)),
-            Event::RobotResumed => self.send(ArmCommand::Resume),
+            Event::RobotResumed => self.send(ArmCommand::Confirm(ArmStage::Stopped)),
             Event::RobotStopped => self.send(ArmCommand::Stop),
             _ => {}
         }
@@ -109,10 +108,6 @@ impl UrConnection {
         Ok(UrConnection { orders: ArmOrders(commands), news })
     }
 
-    pub fn orders(&self) -> ArmOrders {
-        self.orders.clone()
-    }
-
     /// Waits for the next news.
     pub async fn next(&mut self) -> Option<ArmNews> {
         self.news.recv().await
@@ -127,7 +122,6 @@ pub async fn examine(address: IpAddr, ports: [u16; 5], mut driver: UrDriver) -> 
     let [dashboard, _, _, _, rtde] = ports.map(|port| SocketAddr::new(address, port));
     driver.introduce(Dashboard::connect(dashboard).await?.identity().await?);
     let (mut stream, mut client) = (connect(rtde).await?, RtdeClient::default());
-    let lost = |error: io::Error| format!("the connection is lost: {error}");
     let (mut send, mut chunk) = (RtdeClient::hello(), vec![0; CHUNK]);
     let due = Instant::now() + ANSWERS_WITHIN;
     loop {
@@ -203,7 +197,6 @@ impl Service {
 
     async fn drive(&mut self, dashboard: &mpsc::Sender<&'static str>) -> Result<Left, String> {
         let mut stream = connect(self.rtde).await?;
-        let lost = |error: io::Error| format!("the connection is lost: {error}");
         let mut client = RtdeClient::default();
         stream.write_all(&RtdeClient::hello()).await.map_err(lost)?;
         let mut chunk = vec![0; CHUNK];
@@ -255,7 +248,6 @@ impl Service {
             }
             ArmCommand::Order(order) => self.driver.order(order),
             ArmCommand::Confirm(stage) => self.driver.confirm(stage),
-            ArmCommand::Resume => self.driver.resume(),
             ArmCommand::Stop => self.driver.stop(),
         }
     }
@@ -281,6 +273,10 @@ impl Service {
             let _ = self.tell.send(ArmNews::Checks(checks));
         }
     }
+}
+
+fn lost(error: io::Error) -> String {
+    format!("the connection is lost: {error}")
 }
 
 async fn connect(address: SocketAddr) -> Result<TcpStream, String> {

@@ -21,6 +21,11 @@ pub fn six(pose: &Isometry3<f64>) -> [f64; 6] {
     [at.x, at.y, at.z, turn.x, turn.y, turn.z]
 }
 
+/// The length of a vector.
+pub(super) fn norm(parts: &[f64]) -> f64 {
+    parts.iter().map(|part| part * part).sum::<f64>().sqrt()
+}
+
 pub fn isometry([x, y, z, rx, ry, rz]: [f64; 6]) -> Isometry3<f64> {
     Isometry3::from_parts(Translation3::new(x, y, z), UnitQuaternion::from_scaled_axis(Vector3::new(rx, ry, rz)))
 }
@@ -138,9 +143,7 @@ impl JointCommand {
                 self.motion = (next != before).then_some(Motion::Stop { deceleration });
                 next
             }
-            Some(Motion::Along { path, top, acceleration, done, speed }) => {
-                return self.go_along(arm, Motion::Along { path, top, acceleration, done, speed }, share, holds);
-            }
+            Some(along @ Motion::Along { .. }) => return self.go_along(arm, along, share, holds),
             Some(kept) if holds => {
                 self.motion = Some(kept);
                 self.braked(SAFETY_STOP_RAD_S2)

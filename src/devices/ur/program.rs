@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::script::{Call, Expression, Instruction, Operator, Script, ScriptError, Target};
+use super::controller::SimulatedController;
+use super::script::{Call, Expression, Instruction, Script, ScriptError, Target};
 
 /// Number of instructions without one that takes time after which a program counts as caught in a loop.
 const MOST_INSTRUCTIONS: u32 = 20_000;
@@ -23,6 +24,10 @@ pub enum Value {
 impl Value {
     pub fn list(numbers: &[f64]) -> Value {
         Value::List(numbers.iter().copied().map(Value::Number).collect())
+    }
+
+    fn number(&self) -> Option<f64> {
+        if let Value::Number(number) = self { Some(*number) } else { None }
     }
 
     fn size(&self) -> usize {
@@ -58,12 +63,20 @@ impl Arguments {
         named.or_else(|| self.by_place.get(place))
     }
 
+    /// The argument as what it is to be.
+    fn read<'a, T>(
+        &'a self,
+        name: &str,
+        place: usize,
+        wanted: &str,
+        read: impl Fn(&'a Value) -> Option<T>,
+    ) -> Result<T, String> {
+        let value = self.get(name, place).ok_or_else(|| format!("{name} is missing"))?;
+        read(value).ok_or_else(|| format!("{name} is {}; it is {wanted}", value.words()))
+    }
+
     pub fn number(&self, name: &str, place: usize) -> Result<f64, String> {
-        match self.get(name, place) {
-            Some(Value::Number(number)) if number.is_finite() => Ok(*number),
-            Some(other) => Err(format!("{name} is {}; it is a number", other.words())),
-            None => Err(format!("{name} is missing")),
-        }
+        self.read(name, place, "a number", |value| value.number().filter(|number| number.is_finite()))
     }
 
     pub fn number_or(&self, name: &str, place: usize, otherwise: f64) -> Result<f64, String> {
@@ -71,34 +84,33 @@ impl Arguments {
     }
 
     pub fn truth(&self, name: &str, place: usize) -> Result<bool, String> {
-        match self.get(name, place) {
-            Some(Value::Truth(truth)) => Ok(*truth),
-            other => {
-                Err(format!("{name} is {}; it is True or False", other.map_or("missing".to_string(), Value::words)))
-            }
-        }
+        self.read(name, place, "True or False", |value| match value {
+            Value::Truth(truth) => Some(*truth),
+            _ => None,
+        })
     }
 
     pub fn text(&self, name: &str, place: usize) -> Result<&str, String> {
-        match self.get(name, place) {
-            Some(Value::Text(text)) => Ok(text),
-            other => Err(format!("{name} is {}; it is a text", other.map_or("missing".to_string(), Value::words))),
-        }
+        self.read(name, place, "a text", |value| match value {
+            Value::Text(text) => Some(text.as_str()),
+            _ => None,
+        })
     }
 
     /// Six numbers: a list, or a pose.
     pub fn six(&self, name: &str, place: usize) -> Result<[f64; 6], String> {
-        let value = self.get(name, place).ok_or_else(|| format!("{name} is missing"))?;
-        let numbers: Option<Vec<f64>> = match value {
-            Value::Pose(pose) => Some(pose.to_vec()),
-            Value::List(items) => {
-                items.iter().map(|item| if let Value::Number(number) = item { Some(*number) } else { None }).collect()
-            }
-            _ => None,
-        };
-        let numbers = numbers.filter(|numbers| numbers.iter().all(|number| number.is_finite()));
-        let wrong = || format!("{name} is {}; it is a list of 6 finite numbers, or a pose", value.words());
-        numbers.and_then(|numbers| numbers.try_into().ok()).ok_or_else(wrong)
+        self.read(name, place, "a list of 6 finite numbers, or a pose", |value| {
+            let numbers: [f64; 6] = match value {
+                Value::Pose(pose) => *pose,
+                Value::List(items) => items.iter().map(Value::number).collect::<Option<Vec<_>>>()?.try_into().ok()?,
+                _ => return None,
+            };
+            numbers.iter().all(|number| number.is_finite()).then_some(numbers)
+        })
+    }
+
+    pub fn six_or(&self, name: &str, place: usize, otherwise: [f64; 6]) -> Result<[f64; 6], String> {
+        if self.get(name, place).is_none() { Ok(otherwise) } else { self.six(name, place) }
     }
 
     /// Fails where there are more arguments than the function has, or one by a name that it does not have.
@@ -132,12 +144,6 @@ pub enum Outcome {
     Waits(Wait),
     /// The program ends.
     Halts,
-}
-
-/// The controller, as the program sees it.
-pub trait Host {
-    /// Calls a function of the controller; `None` if it has no function of this name.
-    fn call(&mut self, name: &str, arguments: &Arguments) -> Option<Result<Outcome, String>>;
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -184,7 +190,7 @@ impl Program {
     ///
     /// # Errors
     /// The instruction that cannot be carried out.
-    pub fn run(&mut self, host: &mut impl Host) -> Result<Step, ScriptError> {
+    pub fn run(&mut self, host: &mut SimulatedController) -> Result<Step, ScriptError> {
         for _ in 0..MOST_INSTRUCTIONS {
             let line = self.line();
             let step = self.step(host).map_err(|found| ScriptError { line, found })?;
@@ -196,39 +202,38 @@ impl Program {
         Err(ScriptError { line: self.line(), found })
     }
 
-    fn step(&mut self, host: &mut impl Host) -> Result<Option<Step>, String> {
+    fn step(&mut self, host: &mut SimulatedController) -> Result<Option<Step>, String> {
         let Some(frame) = self.frames.last_mut() else { return Ok(Some(Step::Ended)) };
         let Some((_, instruction)) = self.script.functions[frame.function].code.get(frame.at).cloned() else {
-            return self.leave(None);
+            return self.leave(None, host);
         };
         frame.at += 1;
         match instruction {
             Instruction::Jump(to) => frame.at = to,
             Instruction::JumpUnless(condition, to) => match self.value(&condition, host)? {
                 Value::Truth(true) => {}
-                Value::Truth(false) => self.jump(to),
+                Value::Truth(false) => self.frames.last_mut().into_iter().for_each(|frame| frame.at = to),
                 other => return Err(format!("{} as a condition", other.words())),
             },
             Instruction::Assign(target, value) => {
                 let value = self.value(&value, host)?;
-                self.assign(&target, value, host)?;
+                self.assign(target, value, host)?;
             }
             Instruction::Return(value) => {
                 let value = value.map(|value| self.value(&value, host)).transpose()?;
-                return self.leave_with(value, host);
+                return self.leave(value, host);
             }
             Instruction::Call(call, target) => return self.call(&call, target, host),
         }
         Ok(None)
     }
 
-    fn jump(&mut self, to: usize) {
-        if let Some(frame) = self.frames.last_mut() {
-            frame.at = to;
-        }
-    }
-
-    fn call(&mut self, call: &Call, target: Option<Target>, host: &mut impl Host) -> Result<Option<Step>, String> {
+    fn call(
+        &mut self,
+        call: &Call,
+        target: Option<Target>,
+        host: &mut SimulatedController,
+    ) -> Result<Option<Step>, String> {
         let arguments = self.arguments(call, host)?;
         if let Some(function) = self.script.functions.iter().position(|one| one.name == call.name) {
             return self.enter(function, arguments, target, host).map(|()| None);
@@ -243,7 +248,7 @@ impl Program {
             Outcome::Nothing => Ok(None),
             Outcome::Value(value) => {
                 if let Some(target) = target {
-                    self.assign(&target, value, host)?;
+                    self.assign(target, value, host)?;
                 }
                 Ok(None)
             }
@@ -255,7 +260,7 @@ impl Program {
         function: usize,
         arguments: Arguments,
         into: Option<Target>,
-        host: &mut impl Host,
+        host: &mut SimulatedController,
     ) -> Result<(), String> {
         if self.frames.len() >= MOST_FRAMES {
             return Err(format!("more than {MOST_FRAMES} calls inside one another"));
@@ -276,25 +281,13 @@ impl Program {
         Ok(())
     }
 
-    fn leave(&mut self, value: Option<Value>) -> Result<Option<Step>, String> {
+    fn leave(&mut self, value: Option<Value>, host: &mut SimulatedController) -> Result<Option<Step>, String> {
         let left = self.frames.pop();
         match (self.frames.is_empty(), left.and_then(|frame| frame.into), value) {
             (true, ..) => Ok(Some(Step::Ended)),
             (false, None, _) => Ok(None),
             (false, Some(_), None) => Err("a function without a value, whose value is wanted".to_string()),
-            (false, Some(target), Some(value)) => self.put(target, value).map(|()| None),
-        }
-    }
-
-    /// Leaves a function; a value for an item of a list is put with its place computed in the caller.
-    fn leave_with(&mut self, value: Option<Value>, host: &mut impl Host) -> Result<Option<Step>, String> {
-        match (self.frames.last().and_then(|frame| frame.into.clone()), value) {
-            (Some(target), Some(value)) if target.item.is_some() && self.frames.len() > 1 => {
-                self.frames.pop();
-                self.assign(&target, value, host)?;
-                Ok(None)
-            }
-            (_, value) => self.leave(value),
+            (false, Some(target), Some(value)) => self.assign(target, value, host).map(|()| None),
         }
     }
 
@@ -311,10 +304,8 @@ impl Program {
         Ok(())
     }
 
-    fn assign(&mut self, target: &Target, value: Value, host: &mut impl Host) -> Result<(), String> {
-        let Some(item) = &target.item else {
-            return self.put(target.clone(), value);
-        };
+    fn assign(&mut self, target: Target, value: Value, host: &mut SimulatedController) -> Result<(), String> {
+        let Some(item) = &target.item else { return self.put(target, value) };
         let (item, mut whole) = (self.value(item, host)?, self.variable(&target.name)?);
         match (&mut whole, &value) {
             (Value::List(items), _) => {
@@ -324,7 +315,7 @@ impl Program {
             (Value::Pose(parts), Value::Number(number)) => parts[place(&item, 6)?] = *number,
             _ => return Err(format!("{} is {}; it has no items", target.name, whole.words())),
         }
-        self.put(target.clone(), whole)
+        self.put(target, whole)
     }
 
     fn variable(&self, name: &str) -> Result<Value, String> {
@@ -333,7 +324,7 @@ impl Program {
         value.ok_or_else(|| format!("no variable {name}"))
     }
 
-    fn arguments(&mut self, call: &Call, host: &mut impl Host) -> Result<Arguments, String> {
+    fn arguments(&mut self, call: &Call, host: &mut SimulatedController) -> Result<Arguments, String> {
         let mut arguments = Arguments::default();
         for (name, value) in &call.arguments {
             let value = self.value(value, host)?;
@@ -345,15 +336,7 @@ impl Program {
         Ok(arguments)
     }
 
-    fn numbers(&mut self, parts: &[Expression], host: &mut impl Host) -> Result<Vec<f64>, String> {
-        let number = |value: Value| match value {
-            Value::Number(number) => Ok(number),
-            other => Err(format!("{} in a pose", other.words())),
-        };
-        parts.iter().map(|part| self.value(part, host).and_then(number)).collect()
-    }
-
-    fn value(&mut self, expression: &Expression, host: &mut impl Host) -> Result<Value, String> {
+    fn value(&mut self, expression: &Expression, host: &mut SimulatedController) -> Result<Value, String> {
         Ok(match expression {
             Expression::Number(number) => Value::Number(*number),
             Expression::Truth(truth) => Value::Truth(*truth),
@@ -363,8 +346,9 @@ impl Program {
                 Value::List(items.iter().map(|item| self.value(item, host)).collect::<Result<_, _>>()?)
             }
             Expression::Pose(parts) => {
-                let parts = self.numbers(parts, host)?;
-                Value::Pose(parts.try_into().map_err(|_| "a pose has 6 numbers")?)
+                let number = |value: Value| value.number().ok_or_else(|| format!("{} in a pose", value.words()));
+                let parts = parts.iter().map(|part| self.value(part, host).and_then(number));
+                Value::Pose(parts.collect::<Result<Vec<_>, _>>()?.try_into().map_err(|_| "a pose has 6 numbers")?)
             }
             Expression::Item(whole, item) => {
                 let (whole, item) = (self.value(whole, host)?, self.value(item, host)?);
@@ -395,18 +379,16 @@ impl Program {
             Expression::Binary(operator, left, right) => {
                 let left = self.value(left, host)?;
                 // The right side of a decided condition is not computed.
-                match (operator, &left) {
-                    (Operator::And, Value::Truth(false)) | (Operator::Or, Value::Truth(true)) => return Ok(left),
-                    _ => {}
+                if matches!((*operator, &left), ("and", Value::Truth(false)) | ("or", Value::Truth(true))) {
+                    return Ok(left);
                 }
-                let right = self.value(right, host)?;
-                combined(*operator, &left, &right)?
+                combined(operator, &left, &self.value(right, host)?)?
             }
         })
     }
 }
 
-fn builtin(call: &Call, arguments: &Arguments, host: &mut impl Host) -> Result<Outcome, String> {
+fn builtin(call: &Call, arguments: &Arguments, host: &mut SimulatedController) -> Result<Outcome, String> {
     let outcome = host.call(&call.name, arguments);
     let outcome = outcome.ok_or_else(|| format!("no function {}, or none that is supported", call.name))?;
     outcome.map_err(|found| format!("{}: {found}", call.name))
@@ -421,24 +403,23 @@ fn place(item: &Value, length: usize) -> Result<usize, String> {
     }
 }
 
-fn combined(operator: Operator, left: &Value, right: &Value) -> Result<Value, String> {
-    use Operator::{And, AtLeast, AtMost, Divided, Equal, Greater, Less, Minus, Modulo, Or, Plus, Times, Unequal, Xor};
+fn combined(operator: &str, left: &Value, right: &Value) -> Result<Value, String> {
     Ok(match (operator, left, right) {
-        (Equal, ..) => Value::Truth(left == right),
-        (Unequal, ..) => Value::Truth(left != right),
-        (And, Value::Truth(one), Value::Truth(two)) => Value::Truth(*one && *two),
-        (Or, Value::Truth(one), Value::Truth(two)) => Value::Truth(*one || *two),
-        (Xor, Value::Truth(one), Value::Truth(two)) => Value::Truth(one != two),
-        (Less, Value::Number(one), Value::Number(two)) => Value::Truth(one < two),
-        (Greater, Value::Number(one), Value::Number(two)) => Value::Truth(one > two),
-        (AtMost, Value::Number(one), Value::Number(two)) => Value::Truth(one <= two),
-        (AtLeast, Value::Number(one), Value::Number(two)) => Value::Truth(one >= two),
-        (Plus, Value::Number(one), Value::Number(two)) => Value::Number(one + two),
-        (Minus, Value::Number(one), Value::Number(two)) => Value::Number(one - two),
-        (Times, Value::Number(one), Value::Number(two)) => Value::Number(one * two),
-        (Divided | Modulo, Value::Number(_), Value::Number(0.0)) => return Err("a division by 0".to_string()),
-        (Divided, Value::Number(one), Value::Number(two)) => Value::Number(one / two),
-        (Modulo, Value::Number(one), Value::Number(two)) => Value::Number(one % two),
+        ("==", ..) => Value::Truth(left == right),
+        ("!=", ..) => Value::Truth(left != right),
+        ("and", Value::Truth(one), Value::Truth(two)) => Value::Truth(*one && *two),
+        ("or", Value::Truth(one), Value::Truth(two)) => Value::Truth(*one || *two),
+        ("xor", Value::Truth(one), Value::Truth(two)) => Value::Truth(one != two),
+        ("<", Value::Number(one), Value::Number(two)) => Value::Truth(one < two),
+        (">", Value::Number(one), Value::Number(two)) => Value::Truth(one > two),
+        ("<=", Value::Number(one), Value::Number(two)) => Value::Truth(one <= two),
+        (">=", Value::Number(one), Value::Number(two)) => Value::Truth(one >= two),
+        ("+", Value::Number(one), Value::Number(two)) => Value::Number(one + two),
+        ("-", Value::Number(one), Value::Number(two)) => Value::Number(one - two),
+        ("*", Value::Number(one), Value::Number(two)) => Value::Number(one * two),
+        ("/" | "%", Value::Number(_), Value::Number(0.0)) => return Err("a division by 0".to_string()),
+        ("/", Value::Number(one), Value::Number(two)) => Value::Number(one / two),
+        ("%", Value::Number(one), Value::Number(two)) => Value::Number(one % two),
         _ => return Err(format!("{} and {}, which do not go together", left.words(), right.words())),
     })
 }

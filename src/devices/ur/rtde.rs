@@ -68,19 +68,6 @@ impl PackageReader {
     }
 }
 
-/// A text message to a client.
-pub fn text_message(message: &ControllerMessage) -> Vec<u8> {
-    let source = "tomcom";
-    let text = message.text.as_bytes();
-    let text = &text[..text.len().min(usize::from(u8::MAX))];
-    let mut carried = vec![text.len() as u8];
-    carried.extend(text);
-    carried.push(source.len() as u8);
-    carried.extend(source.as_bytes());
-    carried.push(message.level as u8);
-    package(b'M', &carried)
-}
-
 #[derive(Clone, Debug)]
 struct OutputRecipe {
     variables: Vec<Output>,
@@ -90,7 +77,7 @@ struct OutputRecipe {
 }
 
 /// One client.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct RtdeConnection {
     /// Tells connections apart, for the inputs that they claim.
     id: u64,
@@ -103,14 +90,7 @@ pub struct RtdeConnection {
 
 impl RtdeConnection {
     pub fn new(id: u64) -> RtdeConnection {
-        RtdeConnection {
-            id,
-            packages: PackageReader::default(),
-            is_agreed: false,
-            is_started: false,
-            outputs: Vec::new(),
-            inputs: Vec::new(),
-        }
+        RtdeConnection { id, ..RtdeConnection::default() }
     }
 
     /// Takes bytes from the client, and returns the answers.
@@ -138,17 +118,14 @@ impl RtdeConnection {
                 let version = <[u8; 2]>::try_from(carried).map_err(|_| RtdeFault::Content(letter))?;
                 let is_served = u16::from_be_bytes(version) == 2;
                 self.is_agreed |= is_served;
-                return Ok(package(kind, &[u8::from(is_served)]));
+                Ok(package(kind, &[u8::from(is_served)]))
             }
             b'v' => {
                 let numbers: Vec<u8> = controller.series.version().iter().flat_map(|part| part.to_be_bytes()).collect();
-                return Ok(package(kind, &numbers));
+                Ok(package(kind, &numbers))
             }
-            b'M' => return Ok(Vec::new()),
-            b'U' | b'O' | b'I' | b'S' | b'P' if !self.is_agreed => return Err(RtdeFault::Version(letter)),
-            _ => {}
-        }
-        match kind {
+            b'M' => Ok(Vec::new()),
+            b'U' | b'O' | b'I' | b'S' | b'P' if !self.is_agreed => Err(RtdeFault::Version(letter)),
             b'O' => self.set_up_outputs(carried, controller),
             b'I' => self.set_up_inputs(carried, controller),
             b'S' => {
@@ -174,7 +151,7 @@ impl RtdeConnection {
         let found: Vec<Option<Output>> = names.iter().map(|name| variables::output(name)).collect();
         let view = View::new(controller, 1.0);
         let kinds: Vec<&str> =
-            found.iter().map(|output| output.map_or("NOT_FOUND", |output| output.read(&view).kind())).collect();
+            found.iter().map(|output| output.map_or("NOT_FOUND", |output| output.read(&view).into())).collect();
         let complete: Option<Vec<Output>> = found.into_iter().collect();
         let mut recipe = 0;
         if let Some(variables) = complete.filter(|all| !all.is_empty() && self.outputs.len() < MOST_RECIPES) {
@@ -192,7 +169,7 @@ impl RtdeConnection {
             .map(|name| match variables::input(name) {
                 None => "NOT_FOUND",
                 Some(_) if of_another(name) => "IN_USE",
-                Some(datum) => datum.kind(),
+                Some(datum) => datum.into(),
             })
             .collect();
         let is_possible = !kinds.iter().any(|kind| matches!(*kind, "NOT_FOUND" | "IN_USE"));
@@ -245,7 +222,14 @@ impl RtdeConnection {
 
     /// A message of the controller, for a client that has agreed on the protocol.
     pub fn message(&self, message: &ControllerMessage) -> Option<Vec<u8>> {
-        (self.is_agreed && message.level != Level::Info).then(|| text_message(message))
+        if !self.is_agreed || message.level == Level::Info {
+            return None;
+        }
+        let (source, text) = (b"tomcom", message.text.as_bytes());
+        let text = &text[..text.len().min(usize::from(u8::MAX))];
+        let (text_length, source_length) = (text.len() as u8, source.len() as u8);
+        let carried = [&[text_length], text, &[source_length], source, &[message.level as u8]].concat();
+        Some(package(b'M', &carried))
     }
 }
 

@@ -32,26 +32,13 @@ pub enum Expression {
     Call(Call),
     Not(Box<Expression>),
     Negative(Box<Expression>),
-    Binary(Operator, Box<Expression>, Box<Expression>),
+    /// One of `OPERATORS`, between these two.
+    Binary(&'static str, Box<Expression>, Box<Expression>),
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Operator {
-    Or,
-    Xor,
-    And,
-    Equal,
-    Unequal,
-    Less,
-    Greater,
-    AtMost,
-    AtLeast,
-    Plus,
-    Minus,
-    Times,
-    Divided,
-    Modulo,
-}
+/// Operators between two values; those of a later list bind stronger, and `not` stands at the place of the empty one.
+const OPERATORS: [&[&str]; 6] =
+    [&["or", "xor"], &["and"], &[], &["==", "!=", "<", ">", "<=", ">="], &["+", "-"], &["*", "/", "%"]];
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Call {
@@ -186,18 +173,13 @@ fn tokens(text: &str) -> Result<Vec<(u32, Token)>, ScriptError> {
 
 /// The length of the number at the beginning of a text, in bytes: digits, a point, an exponent.
 fn number_length(text: &str) -> usize {
-    let bytes = text.as_bytes();
-    let mut at = 0;
-    while at < bytes.len() {
-        let exponent = at > 0 && matches!(bytes[at - 1], b'e' | b'E');
-        match bytes[at] {
-            b'0'..=b'9' | b'.' | b'e' | b'E' => {}
-            b'+' | b'-' if exponent => {}
-            _ => break,
-        }
-        at += 1;
-    }
-    at
+    let mut before = ' ';
+    let ends = |letter: char| {
+        let is_sign_of_exponent = matches!(letter, '+' | '-') && matches!(before, 'e' | 'E');
+        before = letter;
+        !matches!(letter, '0'..='9' | '.' | 'e' | 'E') && !is_sign_of_exponent
+    };
+    text.find(ends).unwrap_or(text.len())
 }
 
 /// Reads tokens into functions.
@@ -426,16 +408,11 @@ impl Reader<'_> {
         self.at += 1;
         let name = self.name()?;
         self.need("(")?;
-        let mut parameters = Vec::new();
-        while !self.take(")") {
-            let parameter = self.name()?;
-            let default = if self.take("=") { Some(self.expression()?) } else { None };
-            parameters.push((parameter, default));
-            if !self.take(",") {
-                self.need(")")?;
-                break;
-            }
-        }
+        let parameters = self.list(")", |reader| {
+            let parameter = reader.name()?;
+            let default = if reader.take("=") { Some(reader.expression()?) } else { None };
+            Ok((parameter, default))
+        })?;
         self.need(":")?;
         let mut function = Function { name, parameters, code: Vec::new() };
         self.block(&mut function, &mut Vec::new())?;
@@ -452,8 +429,8 @@ impl Reader<'_> {
     }
 
     /// Operators from this level of binding on; a higher level binds stronger.
-    fn binary(&mut self, level: u8) -> Result<Expression, ScriptError> {
-        if level > 5 {
+    fn binary(&mut self, level: usize) -> Result<Expression, ScriptError> {
+        if level == OPERATORS.len() {
             return self.unary();
         }
         if level == 2 && self.take_word("not") {
@@ -471,33 +448,13 @@ impl Reader<'_> {
         Ok(left)
     }
 
-    fn operator(&self, level: u8) -> Option<Operator> {
-        use Operator::{
-            And, AtLeast, AtMost, Divided, Equal, Greater, Less, Minus, Modulo, Or, Plus, Times, Unequal, Xor,
-        };
+    fn operator(&self, level: usize) -> Option<&'static str> {
         let word = match self.peek() {
             Token::Word(word) => word.as_str(),
             Token::Symbol(symbol) => symbol,
             _ => return None,
         };
-        let (operator, binds) = match word {
-            "or" => (Or, 0),
-            "xor" => (Xor, 0),
-            "and" => (And, 1),
-            "==" => (Equal, 3),
-            "!=" => (Unequal, 3),
-            "<" => (Less, 3),
-            ">" => (Greater, 3),
-            "<=" => (AtMost, 3),
-            ">=" => (AtLeast, 3),
-            "+" => (Plus, 4),
-            "-" => (Minus, 4),
-            "*" => (Times, 5),
-            "/" => (Divided, 5),
-            "%" => (Modulo, 5),
-            _ => return None,
-        };
-        (binds == level).then_some(operator)
+        OPERATORS[level].iter().copied().find(|operator| *operator == word)
     }
 
     fn unary(&mut self) -> Result<Expression, ScriptError> {
@@ -517,40 +474,31 @@ impl Reader<'_> {
     }
 
     fn operand(&mut self) -> Result<Expression, ScriptError> {
-        let token = self.peek().clone();
-        match token {
-            Token::Number(number) => {
-                self.at += 1;
-                Ok(Expression::Number(number))
-            }
-            Token::Text(text) => {
-                self.at += 1;
-                Ok(Expression::Text(text))
-            }
-            Token::Symbol("(") => {
-                self.at += 1;
-                let inner = self.expression()?;
-                self.need(")")?;
-                Ok(inner)
-            }
-            Token::Symbol("[") => {
-                self.at += 1;
-                Ok(Expression::List(self.items("]")?))
-            }
-            Token::Word(word) => {
-                self.at += 1;
-                self.word(word)
-            }
-            _ => Err(self.unexpected("a value")),
+        if self.take("(") {
+            let inner = self.expression()?;
+            self.need(")")?;
+            return Ok(inner);
         }
+        if self.take("[") {
+            return Ok(Expression::List(self.list("]", Self::expression)?));
+        }
+        let value = match self.peek().clone() {
+            Token::Number(number) => Expression::Number(number),
+            Token::Text(text) => Expression::Text(text),
+            Token::Word(_) => return self.word(),
+            _ => return Err(self.unexpected("a value")),
+        };
+        self.at += 1;
+        Ok(value)
     }
 
-    fn word(&mut self, word: String) -> Result<Expression, ScriptError> {
+    fn word(&mut self) -> Result<Expression, ScriptError> {
+        let word = self.name()?;
         Ok(match word.as_str() {
             "True" | "true" => Expression::Truth(true),
             "False" | "false" => Expression::Truth(false),
             "p" if self.take("[") => {
-                let parts = self.items("]")?;
+                let parts = self.list("]", Self::expression)?;
                 if parts.len() != 6 {
                     return self.wrong(format!("a pose with {} numbers; it has 6", parts.len()));
                 }
@@ -561,10 +509,15 @@ impl Reader<'_> {
         })
     }
 
-    fn items(&mut self, closing: &'static str) -> Result<Vec<Expression>, ScriptError> {
+    /// What `read` reads, with commas between, up to the closing bracket.
+    fn list<T>(
+        &mut self,
+        closing: &'static str,
+        read: impl Fn(&mut Self) -> Result<T, ScriptError>,
+    ) -> Result<Vec<T>, ScriptError> {
         let mut items = Vec::new();
         while !self.take(closing) {
-            items.push(self.expression()?);
+            items.push(read(self)?);
             if !self.take(",") {
                 self.need(closing)?;
                 break;
@@ -574,22 +527,16 @@ impl Reader<'_> {
     }
 
     fn arguments(&mut self) -> Result<Vec<(Option<String>, Expression)>, ScriptError> {
-        let mut arguments = Vec::new();
-        while !self.take(")") {
-            let named = match (self.peek().clone(), self.tokens.get(self.at + 1)) {
+        self.list(")", |reader| {
+            let named = match (reader.peek().clone(), reader.tokens.get(reader.at + 1)) {
                 (Token::Word(name), Some((_, Token::Symbol("=")))) => {
-                    self.at += 2;
+                    reader.at += 2;
                     Some(name)
                 }
                 _ => None,
             };
-            arguments.push((named, self.expression()?));
-            if !self.take(",") {
-                self.need(")")?;
-                break;
-            }
-        }
-        Ok(arguments)
+            Ok((named, reader.expression()?))
+        })
     }
 }
 

@@ -15,7 +15,7 @@ use tokio::sync::mpsc;
 use tokio::task::JoinHandle;
 use tokio::time::{Instant, interval_at, sleep};
 
-use super::controller::{Level, Series, SimulatedController};
+use super::controller::{Series, SimulatedController};
 use super::dashboard;
 use super::faults::Fault;
 use super::motion::CYCLE_S;
@@ -31,8 +31,8 @@ const CHUNK: usize = 16 * 1024;
 /// Lag behind the wall clock after which the controller lets the lost time go, in seconds: after the machine slept.
 const MOST_LAG_S: f64 = 0.5;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Interface {
+#[derive(Clone, Copy)]
+enum Interface {
     Dashboard,
     /// Primary, secondary and real-time interface, which take scripts.
     Script,
@@ -185,12 +185,7 @@ impl<Tell: FnMut(&str)> Service<Tell> {
 
     fn pass_messages(&mut self) {
         for message in self.controller.take_messages() {
-            let level = match message.level {
-                Level::Error => "error",
-                Level::Warning => "warning",
-                Level::Info => "info",
-            };
-            (self.tell)(&format!("{:.3} s {level}: {}", self.controller.now_s(), message.text));
+            (self.tell)(&format!("{:.3} s {}: {}", self.controller.now_s(), message.level, message.text));
             for connection in self.connections.values() {
                 let Talk::Rtde(rtde) = &connection.talk else { continue };
                 if let Some(bytes) = rtde.message(&message) {
@@ -259,22 +254,14 @@ impl<Tell: FnMut(&str)> Service<Tell> {
         let mut answers = Vec::new();
         let over = match &mut connection.talk {
             Talk::Dashboard(line) => command_lines(line, bytes, controller, &mut answers),
-            Talk::Script(gatherer) => match gatherer.take(bytes) {
-                Ok(scripts) => {
-                    scripts.iter().for_each(|script| {
-                        controller.run_script(script);
-                    });
-                    None
-                }
-                Err(error) => Some(error.to_string()),
-            },
-            Talk::Rtde(rtde) => match rtde.take(bytes, controller) {
-                Ok(found) => {
-                    answers = found;
-                    None
-                }
-                Err(fault) => Some(fault.to_string()),
-            },
+            Talk::Script(gatherer) => {
+                let scripts = gatherer.take(bytes);
+                scripts.iter().flatten().for_each(|script| _ = controller.run_script(script));
+                scripts.err().map(|error| error.to_string())
+            }
+            Talk::Rtde(rtde) => {
+                rtde.take(bytes, controller).map(|found| answers = found).err().map(|fault| fault.to_string())
+            }
         };
         // A client that leaves so much unread is not waited for.
         let is_stuck = !answers.is_empty() && connection.answers.try_send(answers).is_err();

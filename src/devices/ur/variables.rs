@@ -6,10 +6,11 @@ use tomcom_arm::physics::CYCLE_S;
 use tomcom_core::robot::{JOINTS, SafetyMode};
 
 use super::controller::{ArmState, ProgramState, REGISTERS, RobotMode, SimulatedController};
-use super::motion::{six, tcp};
+use super::motion::{norm, six, tcp};
 
-/// A value as it goes over the connection: big endian.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A value as it goes over the connection: big endian. The answer to a setup names its type in capitals.
+#[derive(Clone, Copy, Debug, PartialEq, strum::EnumString, strum::IntoStaticStr)]
+#[strum(serialize_all = "UPPERCASE")]
 pub enum Datum {
     Bool(bool),
     Uint8(u8),
@@ -23,37 +24,6 @@ pub enum Datum {
 }
 
 impl Datum {
-    /// A value of the type of this name, as [`Datum::kind`] tells it.
-    pub fn of_kind(kind: &str) -> Option<Datum> {
-        Some(match kind {
-            "BOOL" => Datum::Bool(false),
-            "UINT8" => Datum::Uint8(0),
-            "UINT32" => Datum::Uint32(0),
-            "UINT64" => Datum::Uint64(0),
-            "INT32" => Datum::Int32(0),
-            "DOUBLE" => Datum::Double(0.0),
-            "VECTOR3D" => Datum::Vector3d([0.0; 3]),
-            "VECTOR6D" => Datum::Vector6d([0.0; 6]),
-            "VECTOR6INT32" => Datum::Vector6int32([0; 6]),
-            _ => return None,
-        })
-    }
-
-    /// The name of its type in the answer to a setup.
-    pub fn kind(&self) -> &'static str {
-        match self {
-            Datum::Bool(_) => "BOOL",
-            Datum::Uint8(_) => "UINT8",
-            Datum::Uint32(_) => "UINT32",
-            Datum::Uint64(_) => "UINT64",
-            Datum::Int32(_) => "INT32",
-            Datum::Double(_) => "DOUBLE",
-            Datum::Vector3d(_) => "VECTOR3D",
-            Datum::Vector6d(_) => "VECTOR6D",
-            Datum::Vector6int32(_) => "VECTOR6INT32",
-        }
-    }
-
     pub fn write(&self, into: &mut Vec<u8>) {
         match self {
             Datum::Bool(value) => into.push(u8::from(*value)),
@@ -78,15 +48,9 @@ impl Datum {
             Datum::Uint64(_) => Datum::Uint64(u64::from_be_bytes(taken(bytes)?)),
             Datum::Int32(_) => Datum::Int32(i32::from_be_bytes(taken(bytes)?)),
             Datum::Double(_) => Datum::Double(f64::from_be_bytes(taken(bytes)?)),
-            Datum::Vector3d(_) => Datum::Vector3d(doubles(bytes)?),
-            Datum::Vector6d(_) => Datum::Vector6d(doubles(bytes)?),
-            Datum::Vector6int32(_) => {
-                let mut values = [0; 6];
-                for value in &mut values {
-                    *value = i32::from_be_bytes(taken(bytes)?);
-                }
-                Datum::Vector6int32(values)
-            }
+            Datum::Vector3d(_) => Datum::Vector3d(several(bytes, f64::from_be_bytes)?),
+            Datum::Vector6d(_) => Datum::Vector6d(several(bytes, f64::from_be_bytes)?),
+            Datum::Vector6int32(_) => Datum::Vector6int32(several(bytes, i32::from_be_bytes)?),
         })
     }
 }
@@ -97,10 +61,13 @@ fn taken<const LENGTH: usize>(bytes: &mut &[u8]) -> Option<[u8; LENGTH]> {
     Some(*head)
 }
 
-fn doubles<const LENGTH: usize>(bytes: &mut &[u8]) -> Option<[f64; LENGTH]> {
-    let mut values = [0.0; LENGTH];
+fn several<Number: Copy + Default, const LENGTH: usize, const COUNT: usize>(
+    bytes: &mut &[u8],
+    read: fn([u8; LENGTH]) -> Number,
+) -> Option<[Number; COUNT]> {
+    let mut values = [Number::default(); COUNT];
     for value in &mut values {
-        *value = f64::from_be_bytes(taken(bytes)?);
+        *value = read(taken(bytes)?);
     }
     Some(values)
 }
@@ -117,25 +84,22 @@ impl View<'_> {
     pub fn new(controller: &SimulatedController, share: f64) -> View<'_> {
         View { controller, share, arm: controller.arm_at(share) }
     }
-
-    fn tcp_force(&self) -> [f64; 6] {
-        let [x, y, z] = self.arm.force_n;
-        [x, y, z, 0.0, 0.0, 0.0]
-    }
 }
 
 type Read = fn(&View) -> Datum;
 
-/// RTDE's number of a safety mode.
-pub fn safety_number(safety: SafetyMode) -> i32 {
-    match safety {
-        SafetyMode::Normal => 1,
-        SafetyMode::Reduced => 2,
-        SafetyMode::ProtectiveStop => 3,
-        SafetyMode::Safeguard => 5,
-        SafetyMode::EmergencyStop => 7,
-        SafetyMode::Fault => 9,
-    }
+/// A safety mode's name at the dashboard server, its number in RTDE, and its bits in `safety_status_bits`: one for the
+/// mode, 7 for an emergency stop, 10 for any stop.
+pub(super) fn safety_codes(safety: SafetyMode) -> (&'static str, i32, u32) {
+    let (name, number, bits) = match safety {
+        SafetyMode::Normal => ("NORMAL", 1, 1),
+        SafetyMode::Reduced => ("REDUCED", 2, 1 << 1),
+        SafetyMode::ProtectiveStop => ("PROTECTIVE_STOP", 3, 1 << 2),
+        SafetyMode::Safeguard => ("SAFEGUARD_STOP", 5, 1 << 4),
+        SafetyMode::EmergencyStop => ("ROBOT_EMERGENCY_STOP", 7, 1 << 6 | 1 << 7),
+        SafetyMode::Fault => ("FAULT", 9, 1 << 9),
+    };
+    (name, number, bits | u32::from(safety.is_stopped()) << 10)
 }
 
 /// The safety mode behind RTDE's number: those of other generations and options count as the nearest of the program's.
@@ -149,20 +113,6 @@ pub fn safety_mode(number: i32) -> SafetyMode {
         6 | 7 => SafetyMode::EmergencyStop,
         _ => SafetyMode::Fault,
     }
-}
-
-/// The bits of `safety_status_bits`: one for the mode, 7 for an emergency stop, 10 for any stop.
-fn safety_bits(safety: SafetyMode) -> u32 {
-    let stopped = u32::from(safety.is_stopped()) << 10;
-    let mode = match safety {
-        SafetyMode::Normal => 1,
-        SafetyMode::Reduced => 1 << 1,
-        SafetyMode::ProtectiveStop => 1 << 2,
-        SafetyMode::Safeguard => 1 << 4,
-        SafetyMode::EmergencyStop => 1 << 6 | 1 << 7,
-        SafetyMode::Fault => 1 << 9,
-    };
-    mode | stopped
 }
 
 /// RTDE's number of a joint's mode.
@@ -198,11 +148,11 @@ const OUTPUTS: &[(&str, Read)] = &[
     ("joint_control_output", NONE_OF_SIX),
     ("actual_TCP_pose", |view| Datum::Vector6d(six(&tcp(&view.controller.arm, &view.arm.actual)))),
     ("actual_TCP_speed", |view| Datum::Vector6d(view.controller.tcp_speed(&view.arm.actual, &view.arm.actual_speeds))),
-    ("actual_TCP_force", |view| Datum::Vector6d(view.tcp_force())),
+    ("actual_TCP_force", |view| Datum::Vector6d(view.arm.tcp_force())),
     ("target_TCP_pose", |view| Datum::Vector6d(six(&tcp(&view.controller.arm, &view.arm.target)))),
     ("target_TCP_speed", |view| Datum::Vector6d(view.controller.tcp_speed(&view.arm.target, &view.arm.target_speeds))),
     ("tcp_offset", |view| Datum::Vector6d(six(&view.controller.arm.flange_from_tip()))),
-    ("tcp_force_scalar", |view| Datum::Double(view.arm.force_n.iter().map(|part| part * part).sum::<f64>().sqrt())),
+    ("tcp_force_scalar", |view| Datum::Double(norm(&view.arm.force_n))),
     ("ft_raw_wrench", NONE_OF_SIX),
     ("actual_digital_input_bits", |view| Datum::Uint64(view.controller.digital_inputs)),
     ("actual_digital_output_bits", |view| Datum::Uint64(view.controller.digital_outputs)),
@@ -210,9 +160,9 @@ const OUTPUTS: &[(&str, Read)] = &[
     ("actual_execution_time", NO_NUMBER),
     ("robot_mode", |view| Datum::Int32(view.controller.mode() as i32)),
     ("joint_mode", |view| Datum::Vector6int32([joint_mode(view.controller.mode()); JOINTS])),
-    ("safety_mode", |view| Datum::Int32(safety_number(view.controller.safety()))),
-    ("safety_status", |view| Datum::Int32(safety_number(view.controller.safety()))),
-    ("safety_status_bits", |view| Datum::Uint32(safety_bits(view.controller.safety()))),
+    ("safety_mode", |view| Datum::Int32(safety_codes(view.controller.safety()).1)),
+    ("safety_status", |view| Datum::Int32(safety_codes(view.controller.safety()).1)),
+    ("safety_status_bits", |view| Datum::Uint32(safety_codes(view.controller.safety()).2)),
     ("robot_status_bits", |view| Datum::Uint32(status_bits(view))),
     ("actual_tool_accelerometer", |_| Datum::Vector3d([0.0; 3])),
     // How the safety system slows the arm down; the slider is target_speed_fraction.
@@ -236,7 +186,7 @@ const OUTPUTS: &[(&str, Read)] = &[
 ];
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Register {
+pub enum Register {
     Integer(usize),
     Double(usize),
     Bit(usize),
@@ -268,19 +218,15 @@ impl Register {
 pub enum Output {
     Plain(usize),
     /// Whether it is a register of the outputs; inputs can be read back.
-    Register(bool, RegisterName),
+    Register(bool, Register),
 }
-
-/// A register, opaque outside of this module.
-#[derive(Clone, Copy, Debug)]
-pub struct RegisterName(Register);
 
 /// The output variable of this name.
 pub fn output(name: &str) -> Option<Output> {
     if let Some(at) = OUTPUTS.iter().position(|(one, _)| *one == name) {
         return Some(Output::Plain(at));
     }
-    let of = |prefix: &str| name.strip_prefix(prefix).and_then(Register::named).map(RegisterName);
+    let of = |prefix: &str| name.strip_prefix(prefix).and_then(Register::named);
     let written = of("output_").map(|register| Output::Register(true, register));
     written.or_else(|| of("input_").map(|register| Output::Register(false, register)))
 }
@@ -289,7 +235,7 @@ impl Output {
     pub fn read(self, view: &View) -> Datum {
         let (is_output, register) = match self {
             Output::Plain(at) => return OUTPUTS[at].1(view),
-            Output::Register(is_output, RegisterName(register)) => (is_output, register),
+            Output::Register(is_output, register) => (is_output, register),
         };
         let registers = if is_output { &view.controller.outputs } else { &view.controller.inputs };
         match register {

@@ -164,11 +164,7 @@ pub struct ItemPreparation {
 /// The task as the participant knows it: the human's buttons by their actions, and the processing steps of every item.
 #[derive(Clone, Debug)]
 pub struct TaskKnowledge {
-    takes: Vec<Option<ButtonId>>,
-    uses: Vec<Option<ButtonId>>,
-    processes: Vec<Option<ButtonId>>,
-    serves: Vec<Option<ButtonId>>,
-    pub trash: Option<ButtonId>,
+    actions: Vec<ButtonAction>,
     makings: Vec<Option<ItemPreparation>>,
     is_station: Vec<bool>,
 }
@@ -176,24 +172,10 @@ pub struct TaskKnowledge {
 impl TaskKnowledge {
     pub fn new(kitchen: &Kitchen) -> TaskKnowledge {
         let mut knowledge = TaskKnowledge {
-            takes: vec![None; kitchen.contents.len()],
-            uses: vec![None; kitchen.locations.len()],
-            processes: vec![None; kitchen.processes.len()],
-            serves: vec![None; kitchen.locations.len()],
-            trash: None,
+            actions: kitchen.buttons[Agent::Human.index()].iter().map(|button| button.action).collect(),
             makings: vec![None; kitchen.contents.len()],
             is_station: vec![false; kitchen.locations.len()],
         };
-        for (index, button) in kitchen.buttons[Agent::Human.index()].iter().enumerate() {
-            let id = Some(ButtonId(index as u8));
-            match button.action {
-                ButtonAction::Take(item) => knowledge.takes[item.index()] = id,
-                ButtonAction::Use(location) => knowledge.uses[location.index()] = id,
-                ButtonAction::Process(process) => knowledge.processes[usize::from(process)] = id,
-                ButtonAction::Serve(order) => knowledge.serves[order.index()] = id,
-                ButtonAction::Trash => knowledge.trash = id,
-            }
-        }
         for (index, process) in kitchen.processes.iter().enumerate() {
             if let Some(place) = process.place {
                 knowledge.is_station[place.index()] = true;
@@ -208,22 +190,9 @@ impl TaskKnowledge {
         knowledge
     }
 
-    /// The human's button that takes this item from a storage.
-    pub fn take(&self, item: ContentId) -> Option<ButtonId> {
-        self.takes[item.index()]
-    }
-
-    /// The human's button of a place, which puts an item down there or picks one up.
-    pub fn at(&self, place: LocationId) -> Option<ButtonId> {
-        self.uses[place.index()]
-    }
-
-    pub fn process(&self, process: u8) -> Option<ButtonId> {
-        self.processes[usize::from(process)]
-    }
-
-    pub fn serve(&self, order: LocationId) -> Option<ButtonId> {
-        self.serves[order.index()]
+    /// The human's button with this action; `None` if only the robot has one.
+    pub fn button(&self, action: ButtonAction) -> Option<ButtonId> {
+        self.actions.iter().position(|own| *own == action).map(|index| ButtonId(index as u8))
     }
 
     /// Whether items are stacked, processed or served at a place, so that the place is more than a parking place.

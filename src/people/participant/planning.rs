@@ -6,7 +6,7 @@
 //! down. The participant waits for what only the robot can do, and for what the robot holds. A press that undoes
 //! something for the sake of another is a detour.
 
-use tomcom_core::kitchen::{Agent, ButtonId, ContentId, LocationId, LocationKind, State};
+use tomcom_core::kitchen::{Agent, ButtonAction, ButtonId, ContentId, LocationId, LocationKind, State};
 
 use super::decision::Habits;
 use super::goals::{GoalContext, Goals, MissingPart, OrderGoal, PartSource};
@@ -16,16 +16,6 @@ pub struct ProposedPress {
     pub button: ButtonId,
     /// Whether the press is a detour, which only makes room, at the cost of another press later.
     pub(crate) is_detour: bool,
-}
-
-impl ProposedPress {
-    fn forward(button: ButtonId) -> ProposedPress {
-        ProposedPress { button, is_detour: false }
-    }
-
-    fn detour(button: ButtonId) -> ProposedPress {
-        ProposedPress { button, is_detour: true }
-    }
 }
 
 /// Backward chaining from the participant's goals in one believed state.
@@ -72,7 +62,7 @@ impl<'a> BackwardChaining<'a> {
     fn serve(&self, goal: &OrderGoal, at: LocationId) -> Option<ProposedPress> {
         let plate = self.prospect.kitchen.plate;
         match self.prospect.kitchen.location(at).kind {
-            _ if at == plate => self.prospect.knowledge.serve(goal.order).map(ProposedPress::forward),
+            _ if at == plate => self.forward(ButtonAction::Serve(goal.order)),
             LocationKind::Hand(Agent::Human) if self.is_free(plate, goal.stack) => self.press_at(plate),
             LocationKind::Hand(Agent::Human) => self.clear(plate),
             LocationKind::Hand(Agent::Robot) if self.state.content(plate).is_empty() => None,
@@ -97,7 +87,7 @@ impl<'a> BackwardChaining<'a> {
         if let Some(making) = making
             && station.unwrap_or(self.hand) == source.at
         {
-            let process = self.prospect.knowledge.process(making.process).map(ProposedPress::forward);
+            let process = self.forward(ButtonAction::Process(making.process));
             return process.or_else(|| if source.at == self.hand { self.park() } else { None });
         }
         match station {
@@ -121,8 +111,8 @@ impl<'a> BackwardChaining<'a> {
     fn fetch(&self, goal: &OrderGoal, part: ContentId, habits: &Habits) -> Option<ProposedPress> {
         let knowledge = self.prospect.knowledge;
         let meant = habits.part_instead(self.prospect.kitchen, goal.stack, part);
-        let take = meant.and_then(|other| knowledge.take(knowledge.ingredient(other)));
-        let take = take.or_else(|| knowledge.take(knowledge.ingredient(part)))?;
+        let take = |part: ContentId| self.forward(ButtonAction::Take(knowledge.ingredient(part)));
+        let take = meant.and_then(take).or_else(|| take(part))?;
         if !self.held.is_empty() {
             return self.free_hand();
         }
@@ -131,7 +121,7 @@ impl<'a> BackwardChaining<'a> {
         let station = making.map_or(Some(self.prospect.kitchen.board), |making| making.place);
         match station.filter(|&station| !self.is_ready(station, ingredient, goal)) {
             Some(blocked) => self.clear(blocked),
-            None => Some(ProposedPress::forward(take)),
+            None => Some(take),
         }
     }
 
@@ -153,16 +143,15 @@ impl<'a> BackwardChaining<'a> {
         for (source, part) in lying {
             if let Some(making) = knowledge.next_making(source.content, part)
                 && making.place == Some(place)
-                && let Some(process) = knowledge.process(making.process)
+                && let Some(process) = self.forward(ButtonAction::Process(making.process))
             {
-                return Some(ProposedPress::forward(process));
+                return Some(process);
             }
         }
         if !self.held.is_empty() {
             return self.free_hand();
         }
-        let button = knowledge.at(place)?;
-        Some(ProposedPress { button, is_detour: self.goals.uses(place) })
+        Some(ProposedPress { is_detour: self.goals.uses(place), ..self.press_at(place)? })
     }
 
     /// Empties the hand: where the held content helps an order, else at a parking place; what no order needs is thrown
@@ -170,7 +159,7 @@ impl<'a> BackwardChaining<'a> {
     fn free_hand(&self) -> Option<ProposedPress> {
         let knowledge = self.prospect.knowledge;
         if !self.goals.uses(self.hand) {
-            return knowledge.trash.map(ProposedPress::forward).or_else(|| self.park());
+            return self.forward(ButtonAction::Trash).or_else(|| self.park());
         }
         for goal in &self.goals.orders {
             if goal.finished == Some(self.hand) && self.is_free(self.prospect.kitchen.plate, self.held) {
@@ -181,7 +170,7 @@ impl<'a> BackwardChaining<'a> {
             };
             match knowledge.next_making(self.held, need.part) {
                 Some(making) if making.place.is_none() => {
-                    return knowledge.process(making.process).map(ProposedPress::forward).or_else(|| self.park());
+                    return self.forward(ButtonAction::Process(making.process)).or_else(|| self.park());
                 }
                 making => {
                     let station = making.and_then(|making| making.place).unwrap_or(self.prospect.kitchen.board);
@@ -198,14 +187,15 @@ impl<'a> BackwardChaining<'a> {
     fn park(&self) -> Option<ProposedPress> {
         let knowledge = self.prospect.knowledge;
         let places = self.prospect.kitchen.location_ids();
-        let free = places.filter(|&place| knowledge.at(place).is_some() && self.is_free(place, self.held));
+        let free = places.filter(|&place| self.press_at(place).is_some() && self.is_free(place, self.held));
         // Board and plate are the last choice for parking, since every dish needs them.
         let kitchen = self.prospect.kitchen;
         let price = |place: &LocationId| {
             (u8::from(knowledge.is_station(*place)), u8::from(*place == kitchen.board || *place == kitchen.plate))
         };
-        let best = free.filter(|&place| !self.is_next(place)).min_by_key(price).and_then(|place| knowledge.at(place));
-        best.or(knowledge.trash).map(ProposedPress::detour)
+        let best = free.filter(|&place| !self.is_next(place)).min_by_key(price).and_then(|place| self.press_at(place));
+        let press = best.or_else(|| self.forward(ButtonAction::Trash))?;
+        Some(ProposedPress { is_detour: true, ..press })
     }
 
     /// Whether some part that is available needs this place next.
@@ -240,6 +230,12 @@ impl<'a> BackwardChaining<'a> {
     }
 
     fn press_at(&self, place: LocationId) -> Option<ProposedPress> {
-        self.prospect.knowledge.at(place).map(ProposedPress::forward)
+        self.forward(ButtonAction::Use(place))
+    }
+
+    /// The press of the human's button with this action, which is no detour.
+    fn forward(&self, action: ButtonAction) -> Option<ProposedPress> {
+        let button = self.prospect.knowledge.button(action)?;
+        Some(ProposedPress { button, is_detour: false })
     }
 }

@@ -149,7 +149,7 @@ impl SimulatedParticipant {
             kitchen: &self.kitchen,
             knowledge: &self.knowledge,
             habits: &self.habits,
-            depth: self.person.depth,
+            depth: self.person.depth as usize,
             in_progress: self.intent.order.map(|(order, _)| order),
             last_dish: self.intent.last_dish,
             lapses: self.intent.lapses,
@@ -165,7 +165,7 @@ impl SimulatedParticipant {
         let passed_s = self.memory.since_s(now);
         self.memory.fade(&kitchen, &mut self.beliefs, now, &in_use);
         for &dish in &in_use {
-            if chance(&mut self.mind, 1.0 - (-self.person.loses_thread_per_s * passed_s).exp()) {
+            if chance(&mut self.mind, 1.0 - (-self.person.loses_thread_per_min / 60.0 * passed_s).exp()) {
                 self.memory.lose_thread(&kitchen, &mut self.beliefs, dish);
             }
         }

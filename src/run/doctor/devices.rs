@@ -13,7 +13,7 @@ use tomcom_devices::ur::{driver::UrDriver, link, server::PORTS};
 use tomcom_devices::{button_box, gaze_file, pupil};
 use tomcom_session::SessionSpec;
 use tomcom_session::button_box::REMEDY;
-use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict, recorded_gaze};
+use tomcom_session::preflight_checks::{PreflightCheck, recorded_gaze};
 #[cfg(feature = "ur")]
 use tomcom_session::settings::{ArmKind, RobotSpec};
 use tomcom_session::settings::{GazeSource, ParticipantKind, ParticipantSpec};
@@ -30,9 +30,7 @@ pub(super) fn display(spec: &SessionSpec) -> Option<PreflightCheck> {
     let remedy = "end the program that uses the port, or set another address or port under [display]";
     Some(match TcpListener::bind(address) {
         Ok(_) => PreflightCheck::ok("wall display", format!("{address} is free for the participant's page")),
-        Err(reason) => {
-            PreflightCheck::new("wall display", PreflightVerdict::Failed, format!("{address}: {reason}"), remedy)
-        }
+        Err(reason) => PreflightCheck::failed("wall display", format!("{address}: {reason}"), remedy),
     })
 }
 
@@ -45,7 +43,7 @@ pub(super) fn arm(spec: &SessionSpec, kitchen: &Kitchen) -> Vec<PreflightCheck> 
     let found = runtime.map_err(|error| error.to_string());
     found.and_then(|runtime| runtime.block_on(link::examine(address, PORTS, driver))).unwrap_or_else(|why| {
         let remedy = "switch the controller on, and set its address under [robot]: arm = { ur = \"192.168.1.10\" }";
-        vec![PreflightCheck::new("controller", PreflightVerdict::Failed, why, remedy)]
+        vec![PreflightCheck::failed("controller", why, remedy)]
     })
 }
 
@@ -60,7 +58,7 @@ pub(super) fn button_box(spec: &SessionSpec) -> Option<PreflightCheck> {
             let here = button_box::lines_here();
             let here = if here.is_empty() { "none".to_string() } else { here.join(", ") };
             let found = format!("{path}: {reason}; serial lines of this computer: {here}");
-            PreflightCheck::new("button box", PreflightVerdict::Failed, found, REMEDY)
+            PreflightCheck::failed("button box", found, REMEDY)
         }
     })
 }
@@ -85,7 +83,7 @@ fn eye_tracker(tracker: &TrackerSpec) -> PreflightCheck {
         Ok(version) => PreflightCheck::ok("eye tracker", format!("{version} answers at {address}:{port}")),
         Err(reason) => {
             let found = format!("no eye tracker answers at {address}:{port} ({reason})");
-            PreflightCheck::new("eye tracker", PreflightVerdict::Failed, found, remedy)
+            PreflightCheck::failed("eye tracker", found, remedy)
         }
     }
 }
@@ -101,7 +99,7 @@ fn lines(spec: &ParticipantSpec) -> PreflightCheck {
         Err(reason) => {
             let remedy = "end the program that uses the port, or set another gaze_port or gaze_listen under \
                           [participant]";
-            PreflightCheck::new("gaze", PreflightVerdict::Failed, format!("{address}: {reason}"), remedy)
+            PreflightCheck::failed("gaze", format!("{address}: {reason}"), remedy)
         }
     }
 }
@@ -114,7 +112,7 @@ pub(super) fn lsl(spec: &SessionSpec) -> Option<PreflightCheck> {
         Err(error) => {
             // The error text is put on one line, since the operating system's loader writes long texts.
             let found = printable(&error.to_string()).into_owned();
-            PreflightCheck::new("lsl", PreflightVerdict::Failed, found, error.remedy())
+            PreflightCheck::failed("lsl", found, error.remedy())
         }
     })
 }
@@ -122,22 +120,12 @@ pub(super) fn lsl(spec: &SessionSpec) -> Option<PreflightCheck> {
 /// Checks whether the Lab Streaming Layer offers the session's gaze stream, and lists the available streams with their
 /// channels.
 fn stream(spec: &SessionSpec) -> PreflightCheck {
+    let failed = |found: &str, remedy: &str| PreflightCheck::failed("gaze", found, remedy);
     let Some(wanted) = spec.lsl.as_ref().and_then(|lsl| lsl.gaze.as_ref()) else {
-        return PreflightCheck::new(
-            "gaze",
-            PreflightVerdict::Failed,
-            "no [lsl.gaze] in the session file",
-            "set name and channels of the stream under [lsl.gaze]",
-        );
+        return failed("no [lsl.gaze] in the session file", "set name and channels of the stream under [lsl.gaze]");
     };
     let Ok(library) = lsl::load(spec.lsl.as_ref()) else {
-        return PreflightCheck::new(
-            "gaze",
-            PreflightVerdict::Failed,
-            "no stream of gaze, since liblsl cannot be \
-                                                                      loaded",
-            "see the check lsl above",
-        );
+        return failed("no stream of gaze, since liblsl cannot be loaded", "see the check lsl above");
     };
     let streams = lsl::streams_of_numbers(library, STREAM_S);
     let there: Vec<(&DiscoveredLslStream, Vec<String>)> =
@@ -156,16 +144,13 @@ fn stream(spec: &SessionSpec) -> PreflightCheck {
         let all: Vec<String> = fitting.into_iter().map(told).collect();
         let found = format!("{} LSL streams {}: {}", all.len(), wanted.title(), all.join("; "));
         let remedy = "set source_id or host under [lsl.gaze] to those of one of them, or end the others";
-        return PreflightCheck::new("gaze", PreflightVerdict::Failed, found, remedy);
+        return failed(&found, remedy);
     }
     if let Some(one) = fitting.first() {
         let remedy = "set x, y and confidence under [lsl.gaze] to labels of channels, or to their numbers from 1";
         return match lsl::missing_channel(wanted, &one.1) {
             None => PreflightCheck::ok("gaze", told(one)),
-            Some(missing) => {
-                let found = format!("the stream has no channel \"{missing}\"; it has {}", told(one));
-                PreflightCheck::new("gaze", PreflightVerdict::Failed, found, remedy)
-            }
+            Some(missing) => failed(&format!("the stream has no channel \"{missing}\"; it has {}", told(one)), remedy),
         };
     }
     let others: Vec<String> = there.iter().map(told).collect();
@@ -173,18 +158,12 @@ fn stream(spec: &SessionSpec) -> PreflightCheck {
         true => format!("no LSL stream {}, and no other stream of numbers", wanted.title()),
         false => format!("no LSL stream {}; the streams of numbers are {}", wanted.title(), others.join("; ")),
     };
-    PreflightCheck::new(
-        "gaze",
-        PreflightVerdict::Failed,
-        found,
-        "start the program that sends the stream; its name \
-                                                                  and type are set under [lsl.gaze]",
-    )
+    failed(&found, "start the program that sends the stream; its name and type are set under [lsl.gaze]")
 }
 
 fn file(tracker: &TrackerSpec, kitchen: &Kitchen) -> Vec<PreflightCheck> {
     let path = tracker.file.as_deref().unwrap_or_default();
-    let failed = |found: String, remedy| vec![PreflightCheck::new("gaze", PreflightVerdict::Failed, found, remedy)];
+    let failed = |found: String, remedy| vec![PreflightCheck::failed("gaze", found, remedy)];
     let map = match tracker.surface_map(kitchen) {
         Ok(map) => map,
         Err(TagError { found, remedy }) => return failed(found, remedy),

@@ -38,7 +38,7 @@ fn camera(number: u32, device: &str) -> PreflightCheck {
     let failed = |found: String| {
         let remedy =
             "connect the camera, end other programs that use it, and see that ffmpeg is 5.1 or newer, with libx264";
-        PreflightCheck::new(&name, PreflightVerdict::Failed, found, remedy)
+        PreflightCheck::failed(&name, found, remedy)
     };
     let input = ffmpeg_input(device).unwrap_or_default();
     let started = tempfile::tempdir().and_then(|folder| {

@@ -22,12 +22,7 @@ pub enum ParticipantDeletionError {
     File(FileError),
     #[error("nothing was deleted: {}: cannot be deleted or written again: {reason}", path.display())]
     #[diagnostic(help("the right to write to the file's folder, on a disk with free space"))]
-    Unwritable {
-        /// File or folder that cannot be deleted or rewritten.
-        path: PathBuf,
-        /// Why the file or folder cannot be deleted or rewritten.
-        reason: io::Error,
-    },
+    Unwritable { path: PathBuf, reason: io::Error },
     /// Files have changed since the participant's data were listed.
     #[error("nothing was deleted: files in {} have changed since they were listed", folder.display())]
     #[diagnostic(help("run the command again, when nothing else writes there"))]

@@ -30,8 +30,9 @@ use tomcom_session::log::{
     ANNOTATION_NAMES, CODES_LOCK, CORRECTION_NAME, EXCLUSION_NAME, LOCK_NAME, LOG_NAME, MCAP_NAME, RRD_NAME,
     SETTINGS_NAME, is_damaged_log,
 };
+use tomcom_session::person_code;
 use tomcom_study::analysis::lesson_report::WizardTrainingRecord;
-use tomcom_study::files::bids_tree;
+use tomcom_study::files::{bids_tree, pool_file};
 use tomcom_study::report;
 
 /// Largest size of a report or a training record that is read, in bytes.
@@ -39,16 +40,13 @@ const MAX_BYTES: u64 = 64 << 20;
 /// A file that is or may be about the participant and is kept, with the reason.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct RetainedFile {
-    /// Path of the file that is not deleted.
     pub path: PathBuf,
-    /// Why the file is not deleted, in words.
     pub reason: String,
 }
 
 /// All data about one participant code that were found in a folder, for their deletion.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ParticipantData {
-    /// Code of the participant whose data are to be deleted.
     pub code: String,
     pub root: PathBuf,
     pub temporary: PathBuf,
@@ -62,6 +60,11 @@ pub struct ParticipantData {
     /// Training records of wizards that name recordings of the participant, each with its text without them.
     pub trainings: Vec<(PathBuf, String)>,
     pub left: Vec<RetainedFile>,
+    /// Files that name the code and stay as they are: session files, frozen plans, recordings of others that were begun
+    /// with it.
+    pub naming: Vec<PathBuf>,
+    /// "; did you mean P07?", where a recording of somebody else has a similar code.
+    pub near: String,
     /// Folders that are removed if they are empty after the deletion; a folder comes after the one that contains it.
     folders: Vec<PathBuf>,
 }
@@ -93,6 +96,8 @@ pub fn find(root: &Path, temporary: &Path, code: &str) -> FileResult<Participant
         tables: Vec::new(),
         trainings: Vec::new(),
         left: Vec::new(),
+        naming: Vec::new(),
+        near: String::new(),
         folders: Vec::new(),
     };
     let mut search = ForgetSearch { found, subject: ForgetSubject::new(code), folders: Vec::new() };
@@ -107,6 +112,7 @@ pub fn find(root: &Path, temporary: &Path, code: &str) -> FileResult<Participant
         search.look_through(folder);
     }
     let mut found = search.found;
+    found.near = person_code::did_you_mean(code, search.subject.codes());
     found.tables.sort_by_key(|(path, _)| (path.ends_with("trials.csv"), path.clone()));
     found.left.sort();
     Ok(found)
@@ -166,6 +172,9 @@ impl ForgetSearch {
         let is_own = is_recording || (is_inside && matches!(owner, RecordingOwner::NoRecording));
         match owner {
             RecordingOwner::Participant { code, recorded_as, began } => {
+                // Its log cannot be changed.
+                let is_named = !is_recording && recorded_as == self.found.code;
+                self.found.naming.extend(is_named.then(|| folder.join(LOG_NAME)));
                 self.subject.add(folder, code, recorded_as, began);
             }
             RecordingOwner::Unknown(reason) => self.leave(folder, reason),
@@ -289,6 +298,12 @@ impl ForgetSearch {
                 let identity = stream_head::identity(path)?;
                 let is_streamed = identity.is_some_and(|identity| self.subject.is_streamed(&identity));
                 self.found.files.extend(is_streamed.then(|| path.to_path_buf()));
+                if !is_own && (end == "toml" || pool_file::is_frozen(path)?) {
+                    let code = format!("\"{}\"", self.found.code);
+                    let is_named =
+                        read_small(path)?.is_some_and(|bytes| String::from_utf8_lossy(&bytes).contains(&code));
+                    self.found.naming.extend(is_named.then(|| path.to_path_buf()));
+                }
                 Ok(is_streamed)
             }
         }

@@ -131,6 +131,11 @@ impl ForgetSubject {
         self.recordings.entry(file_name(folder)).or_default().push(recording);
     }
 
+    /// The codes of all participants with a recording, as often as they have one.
+    pub(super) fn codes(&self) -> impl Iterator<Item = &str> {
+        self.recordings.values().flatten().map(|recording| recording.code.as_str())
+    }
+
     /// Whether a name in a column of participants means the participant: it is the participant's code, with a random seed
     /// before it if several seeds were analysed together.
     pub(super) fn is_participant(&self, name: &str) -> bool {

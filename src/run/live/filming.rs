@@ -10,7 +10,7 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_devices::ffmpeg;
 use tomcom_devices::film_recorder::{FilmRecorder, FilmState};
 use tomcom_session::film::{FilmEvent, VideoSpec, device_path, ffmpeg_input, film_name};
-use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict};
+use tomcom_session::preflight_checks::PreflightCheck;
 use tomcom_session::{Event, Session, TrialPhase};
 
 /// Time for which the cameras film on after the trial's end, so that the page's last flash is on the film.
@@ -150,7 +150,7 @@ impl FilmingCamera {
 /// Whether the trial can be filmed, as far as that is known before.
 fn check(spec: &VideoSpec) -> PreflightCheck {
     let failed = |found: String, remedy: &str| {
-        PreflightCheck::new("film", PreflightVerdict::Failed, found, format!("{remedy}; or start without a film"))
+        PreflightCheck::failed("film", found, format!("{remedy}; or start without a film"))
     };
     let paths = spec.devices.iter().filter_map(|device| device_path(device));
     match paths.into_iter().find(|path| !Path::new(path).exists()) {

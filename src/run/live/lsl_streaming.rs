@@ -7,8 +7,7 @@ use crate::console::console_model::LslStatus;
 use crate::run::clock::SessionClock;
 use crate::run::operator_station::OperatorStation;
 use tomcom_core::base::text::count;
-use tomcom_devices::lsl::{LslCounts, LslSample, LslStreams};
-use tomcom_devices::lsl::{LslSampleConverter, StreamSample};
+use tomcom_devices::lsl::{LslCounts, LslSampleConverter, LslStreams, StreamSample};
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::history::belief_track::BeliefSnapshot;
 use tomcom_session::{Session, TimestampedEvent};
@@ -55,10 +54,7 @@ impl LslStreaming {
     }
 
     fn send(&self, samples: Vec<StreamSample>, clock: &SessionClock) {
-        let timed = |StreamSample { outlet, time, values }: StreamSample| {
-            let at = clock.instant_of(time);
-            LslSample { outlet, at, values }
-        };
+        let timed = |sample: StreamSample| (clock.instant_of(sample.time), sample);
         self.streams.tell(samples.into_iter().map(timed).collect());
     }
 

@@ -3,8 +3,7 @@
 use super::live_session::Live;
 use super::lsl_streaming::LslStreaming;
 use super::viewing::StreamedSession;
-use crate::console::console_model::NoticeLevel;
-use crate::console::console_model::RecordingStatus;
+use crate::console::console_model::{NoticeLevel, RecordingStatus};
 use crate::run::doctor::free_bytes;
 use tomcom_core::robot::ArmStage;
 use tomcom_session::film::FilmEvent;

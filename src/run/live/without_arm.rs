@@ -4,7 +4,6 @@ use super::live_session::Live;
 use crate::run::operator_station::ArmNews;
 
 impl Live {
-    /// Never called, since this build has no driver.
     pub(super) fn take_arm_news(&mut self, news: ArmNews) {
         match news {}
     }

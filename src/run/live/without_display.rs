@@ -10,27 +10,22 @@ use tomcom_session::{Event, Session};
 pub(super) enum ParticipantDisplay {}
 
 impl ParticipantDisplay {
-    /// Returns no display, since this build lacks the participant's display.
     pub fn at(_: &OperatorStation) -> (Option<ParticipantDisplay>, Option<ParticipantDisplayHealth>) {
         (None, None)
     }
 
-    /// Does nothing: this build has no participant's display.
     pub fn build(&mut self, _: &Session) {
         match *self {}
     }
 
-    /// Does nothing: this build shows no hand to the participant.
     pub fn move_robot(&mut self, _: &Session, _: SessionTime) {
         match *self {}
     }
 
-    /// Does nothing: this build shows nothing to the participant.
     pub fn show(&mut self, _: &Session, _: SessionTime) {
         match *self {}
     }
 
-    /// Does nothing: this build has no display whose state could be examined.
     pub fn examine(&self, _: &mut ParticipantDisplayHealth) {
         match *self {}
     }
@@ -43,7 +38,6 @@ pub(super) struct PageEvent {
 }
 
 impl PageEvent {
-    /// Never called, since this build has no participant's page.
     pub fn from_input(input: PageInput, _: &Session, _: SessionTime) -> PageEvent {
         match input {}
     }

@@ -25,22 +25,18 @@ impl StreamedSession {
         if session.spec.rerun.is_on() { Err(MissingFeature(Feature::Rerun).to_string()) } else { Ok(None) }
     }
 
-    /// Does nothing: this build has no stream to Rerun.
     pub fn view(&mut self, _: &[TimestampedEvent], _: &SessionEngine) {
         match *self {}
     }
 
-    /// Never called, since this build has no stream to Rerun.
     pub fn give_up_file(&mut self) -> bool {
         match *self {}
     }
 
-    /// Never called, since this build has no stream to Rerun.
     pub fn status(&self) -> RerunStreamStatus {
         match *self {}
     }
 
-    /// Never called, since this build has no stream to Rerun.
     pub fn close(self, _: &LogWriter) {
         match self {}
     }

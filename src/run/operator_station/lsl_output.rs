@@ -2,8 +2,7 @@
 
 use std::rc::Rc;
 
-use tomcom_devices::lsl::describe;
-use tomcom_devices::lsl::{self, LslError, LslLibrary, LslStreams};
+use tomcom_devices::lsl::{self, LslError, LslLibrary, LslStreams, describe};
 use tomcom_session::{Session, SessionSpec};
 
 /// The LSL library, if the session uses LSL, and the streams that are sent. A participant's streams stay open from one

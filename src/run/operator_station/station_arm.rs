@@ -26,7 +26,7 @@ impl StationArm {
     }
 
     pub fn orders(&self) -> Option<ArmOrders> {
-        self.0.as_ref().map(UrConnection::orders)
+        self.0.as_ref().map(|link| link.orders.clone())
     }
 
     /// Waits for the arm's next news; waits forever without a real arm.

@@ -12,17 +12,14 @@ pub(in crate::run) enum ArmNews {}
 pub(in crate::run) enum ArmOrders {}
 
 impl ArmOrders {
-    /// Never called, since this build has no driver.
     pub fn begin(&self) {
         match *self {}
     }
 
-    /// Never called, since this build has no driver.
     pub fn order<Order>(&self, _: Order) {
         match *self {}
     }
 
-    /// Never called, since this build has no driver.
     pub fn tell(&self, _: &Event) {
         match *self {}
     }
@@ -34,19 +31,14 @@ pub(in crate::run) struct StationArm {}
 
 impl StationArm {
     /// Starts no driver; sessions that need one were refused before.
-    ///
-    /// # Errors
-    /// None.
     pub fn open(_: &SessionSpec, _: &Kitchen) -> Result<StationArm, LiveError> {
         Ok(StationArm {})
     }
 
-    /// No orders, since this build has no driver.
     pub fn orders(&self) -> Option<ArmOrders> {
         None
     }
 
-    /// Never returns, since this build has no driver.
     pub async fn next(&mut self) -> Option<ArmNews> {
         std::future::pending().await
     }

@@ -21,9 +21,6 @@ pub(in crate::run) struct StationDisplay {}
 
 impl StationDisplay {
     /// Opens no display; sessions that need a display were refused before.
-    ///
-    /// # Errors
-    /// None.
     pub async fn open(_: &SessionSpec) -> Result<StationDisplay, LiveError> {
         Ok(StationDisplay {})
     }
@@ -38,7 +35,6 @@ impl StationDisplay {
         false
     }
 
-    /// Never returns, since this build has no participant's page.
     pub async fn next(&mut self) -> Option<PageInput> {
         std::future::pending().await
     }
@@ -62,12 +58,10 @@ pub(in crate::run) fn take_consent_input(
 pub(in crate::run) enum Remark {}
 
 impl Remark {
-    /// Never called, since this build has no observers.
     pub fn event(&self) -> Event {
         match *self {}
     }
 
-    /// Never called, since this build has no observers.
     pub fn answer(self, _: Result<(), String>) {
         match self {}
     }
@@ -79,25 +73,18 @@ pub(in crate::run) struct StationObservers {}
 
 impl StationObservers {
     /// Opens no page; commands that ask for one were refused before.
-    ///
-    /// # Errors
-    /// None.
     pub async fn open(_: Option<SocketAddr>) -> Result<StationObservers, LiveError> {
         Ok(StationObservers {})
     }
 
-    /// Does nothing, since this build has no observers.
     pub fn show(&self, _: &CompletedFrame<'_>, _: Theme) {}
 
-    /// Never returns, since this build has no observers.
     pub async fn next(&mut self) -> Option<Remark> {
         std::future::pending().await
     }
 
-    /// Does nothing, since this build has no observers.
     pub fn refuse_waiting(&mut self) {}
 
-    /// No state, since this build has no observers.
     pub fn status(&self) -> Option<Box<dyn Fn() -> ObserverStatus>> {
         None
     }

@@ -3,8 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::Review;
-use crate::console::console_model::NoticeLevel;
-use crate::console::console_model::{Playback, ReplayAction, SPEEDS, TRAIL_S};
+use crate::console::console_model::{NoticeLevel, Playback, ReplayAction, SPEEDS, TRAIL_S};
 use tomcom_core::base::text::count;
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::Event;

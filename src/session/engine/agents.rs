@@ -47,9 +47,10 @@ pub(super) fn simulated_participant(kitchen: Arc<Kitchen>, spec: &SessionSpec, t
 
 pub(super) fn scripted_wizard(kitchen: &Arc<Kitchen>, spec: &SessionSpec, trial: u64) -> Option<ScriptedWizard> {
     let (highlights, seed) = (spec.highlights(kitchen), spec.seed);
-    let script = spec
-        .scripts_wizard()
-        .then(|| ScriptedWizard::new(kitchen.clone(), spec.wizard.clone(), highlights, seed, trial))?;
+    if !spec.scripts_wizard() {
+        return None;
+    }
+    let script = ScriptedWizard::new(kitchen.clone(), spec.wizard.clone(), highlights, seed, trial);
     Some(if spec.script_reads_offers() { script.reading_offers(seed, trial) } else { script })
 }
 
@@ -142,12 +143,8 @@ impl SessionEngine {
             }
             Event::RobotStopped => return self.robot.stop(),
             Event::RobotResumed => self.robot.resume(now),
-            Event::RobotHeld { .. } => {
-                self.robot.hold(true);
-                None
-            }
-            Event::RobotReleased { .. } => {
-                self.robot.hold(false);
+            Event::RobotHeld { .. } | Event::RobotReleased { .. } => {
+                self.robot.hold(matches!(stamped.event, Event::RobotHeld { .. }));
                 None
             }
             Event::RobotSkipped { .. } => self.robot.skip(now),
@@ -194,9 +191,7 @@ impl SessionEngine {
             self.robot.human_means(now, button_m, at);
         }
     }
-}
 
-impl SessionEngine {
     /// Only what a participant can notice.
     pub(crate) fn tell_participant(&mut self, stamped: &TimestampedEvent, change: &KitchenChange) {
         let Some(participant) = &mut self.participant else { return };
@@ -267,9 +262,7 @@ impl SessionEngine {
             }
         }
     }
-}
 
-impl SessionEngine {
     pub(crate) fn probe_due(&self) -> Option<SessionTime> {
         let rule = upcoming(self.session()).map(|(due, _)| due);
         [rule, self.answer_due()].into_iter().flatten().min()

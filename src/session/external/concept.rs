@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use super::happenings::Happening;
-use super::kitchen_description::{KitchenDescription, true_values};
+use super::kitchen_description::{describe, true_values};
 use super::{
     DialogueOutcome, ExternalEvent, MOST_FAULTS, MindDialogue, MindFault, MindRole, PROTOCOL, ToldBelief, check_belief,
     recorded_text,
@@ -33,7 +34,7 @@ struct ConceptBegin {
     seed: u64,
     cost_of_communication: f64,
     signal_shown_s: f64,
-    kitchen: KitchenDescription,
+    kitchen: Value,
 }
 
 /// A question for advice.
@@ -173,7 +174,7 @@ impl ConceptDialogue {
             seed: session.seed() >> 11,
             cost_of_communication: self.cost_of_communication,
             signal_shown_s: session.spec.signals.shown_s,
-            kitchen: KitchenDescription::new(&session.kitchen),
+            kitchen: describe(&session.kitchen),
         })
     }
 

@@ -23,10 +23,8 @@ pub struct Happening {
 #[serde(tag = "what", rename_all = "snake_case")]
 pub enum HappeningKind {
     /// A run of gaze samples in one location's area.
-    Look {
-        location: String,
-        for_s: f64,
-    },
+    Look { location: String, for_s: f64 },
+    /// By either agent.
     Press {
         by: &'static str,
         button: String,
@@ -35,21 +33,16 @@ pub enum HappeningKind {
         #[serde(skip_serializing_if = "Option::is_none")]
         error: Option<bool>,
     },
-    Order {
-        order: String,
-        dish: String,
-    },
-    OrderCleared {
-        order: String,
-    },
-    Signal {
-        signal: Signal,
-    },
+    /// It appeared.
+    Order { order: String, dish: String },
+    /// Once it was served.
+    OrderCleared { order: String },
+    /// It was shown to the participant.
+    Signal { signal: Signal },
+    /// It disappeared.
     SignalEnded,
     /// The human has not pressed for unusually long.
-    HumanWaits {
-        silent_s: f64,
-    },
+    HumanWaits { silent_s: f64 },
 }
 
 /// Collects happenings between questions.

@@ -43,11 +43,7 @@ pub enum MindRole {
     Participant,
 }
 
-impl MindRole {
-    pub fn name(self) -> &'static str {
-        self.into()
-    }
-}
+named!(MindRole);
 
 /// A belief that an external mind tells: for some state aspects, the probabilities of their values; what is not named
 /// has none.

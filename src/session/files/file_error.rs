@@ -71,7 +71,13 @@ impl From<FileFault> for FileError {
 
 impl FileError {
     /// An error at one place of a file's text. Control characters in the message are escaped.
-    pub fn at(path: &Path, text: &str, span: Option<Range<usize>>, found: String, remedy: String) -> FileError {
+    pub fn at(
+        path: &Path,
+        text: &str,
+        span: Option<Range<usize>>,
+        found: String,
+        remedy: impl Into<String>,
+    ) -> FileError {
         let name = name_of(path);
         let boundary = |at: usize| (0..=at.min(text.len())).rev().find(|&at| text.is_char_boundary(at)).unwrap_or(0);
         let start = span.as_ref().map_or(0, |span| boundary(span.start));
@@ -81,7 +87,7 @@ impl FileError {
             SourceSpan::from((printable_lines(&text[..start]).len(), length))
         });
         let source = NamedSource::new(&name, printable_lines(text).into_owned());
-        let (found, text) = (one_line(found), Arc::new(source));
+        let (found, text, remedy) = (one_line(found), Arc::new(source), remedy.into());
         FileFault::Wrong { name, line, found, text, span, remedy }.into()
     }
 
@@ -99,8 +105,8 @@ impl FileError {
     }
 
     /// An error of a folder, an option, or a file as a whole, for which no line can be named.
-    pub fn from_finding(what: &Path, found: String, remedy: String) -> FileError {
-        FileFault::Unfit { name: name_of(what), found: one_line(found), remedy }.into()
+    pub fn from_finding(what: &Path, found: impl Into<String>, remedy: impl Into<String>) -> FileError {
+        FileFault::Unfit { name: name_of(what), found: one_line(found.into()), remedy: remedy.into() }.into()
     }
 
     /// A session or a recording needs an optional part which this build lacks.
@@ -110,12 +116,8 @@ impl FileError {
         } else {
             ""
         };
-        let remedy = format!("{}{instead}", missing.remedy());
-        FileError::from_finding(
-            what,
-            format!("a session that needs another build of tomcom; this build is {missing}"),
-            remedy,
-        )
+        let found = format!("a session that needs another build of tomcom; this build is {missing}");
+        FileError::from_finding(what, found, format!("{}{instead}", missing.remedy()))
     }
 
     pub fn unreadable(path: &Path, reason: io::Error, remedy: &str) -> FileError {
@@ -146,7 +148,7 @@ pub fn missing(
     let folder = session.parent().unwrap_or(Path::new("."));
     let near = near_path::did_you_mean(&folder.join(file), folder);
     let found = format!("{key} = \"{file}\", which cannot be read: {reason}{near}");
-    FileError::at(session, text, place_of(text, path, nth), found, remedy.to_string())
+    FileError::at(session, text, place_of(text, path, nth), found, remedy)
 }
 
 fn name_of(path: &Path) -> String {

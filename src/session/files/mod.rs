@@ -27,9 +27,7 @@ use crate::{SessionSpec, ranges};
 use tomcom_core::base::number_range::OutOfRange;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::compile::{KitchenFileError, KitchenFileKind};
-use tomcom_core::kitchen::files::LayoutSpec;
-use tomcom_core::kitchen::files::RecipesSpec;
-use tomcom_core::kitchen::files::check_layout;
+use tomcom_core::kitchen::files::{LayoutSpec, RecipesSpec, check_layout};
 use tomcom_core::mind::model::HumanModel;
 use tomcom_people::wizard::WizardKind;
 
@@ -70,7 +68,7 @@ pub fn read_session(path: &Path, language: Option<&str>) -> FileResult<SessionSe
         // A recording's header has its settings as text.
         let beside = folder.join(&*file).into_os_string().into_string().map_err(|beside| {
             let found = format!("{}, no UTF-8", Path::new(&beside).display());
-            let remedy = "a session file in a folder whose path is UTF-8".to_string();
+            let remedy = "a session file in a folder whose path is UTF-8";
             FileError::at(path, &text, place_of(&text, key, 0), found, remedy)
         })?;
         *file = beside;
@@ -78,7 +76,7 @@ pub fn read_session(path: &Path, language: Option<&str>) -> FileResult<SessionSe
     if let Some(file) = &spec.human_model {
         if text.parse::<toml::Table>().is_ok_and(|table| table.contains_key("human")) {
             let found = "human_model, beside a [human] table in the session file".to_string();
-            let remedy = "one of the two: that file, or the [human] tables in here, which then have to go".to_string();
+            let remedy = "one of the two: that file, or the [human] tables in here, which then have to go";
             return Err(FileError::at(path, &text, place_of(&text, "human_model", 0), found, remedy));
         }
         let model = folder.join(file);
@@ -94,7 +92,7 @@ pub fn read_session(path: &Path, language: Option<&str>) -> FileResult<SessionSe
     spec.check().map_err(|error| wrong_setting(path, &text, error))?;
     if let Some(step) = &spec.step {
         let found = format!("the place of a recording in the plan \"{}\"", step.plan);
-        let remedy = "no [step]: the program finds it out from the plan and its recordings".to_string();
+        let remedy = "no [step]: the program finds it out from the plan and its recordings";
         return Err(FileError::at(path, &text, place_of(&text, "step.digest", 0), found, remedy));
     }
     let questionnaires = match &spec.plan {
@@ -164,7 +162,7 @@ fn read_tutorial(session: &Path, text: &str, spec: &SessionSpec, kitchen: &Kitch
 
 /// Path of a file's translation into this language, if there is such a file beside it: `acceptance.de.toml` beside
 /// `acceptance.toml`.
-fn in_language(path: PathBuf, code: &str) -> PathBuf {
+pub fn in_language(path: PathBuf, code: &str) -> PathBuf {
     // A setting that names a file of texts instead of a language has a path here, not a language code.
     let is_code = code.chars().all(|sign| sign.is_ascii_alphanumeric() || sign == '-');
     let own = is_code.then(|| path.with_extension(format!("{code}.toml")));
@@ -206,7 +204,7 @@ pub fn read_kitchen(layout_path: &Path) -> FileResult<KitchenWithSources> {
     let recipes_text = carried::read(&recipes_path).map_err(|reason| {
         let near = near_path::did_you_mean(&recipes_path, folder);
         let found = format!("recipes = \"{}\", which cannot be read: {reason}{near}", layout.recipes.get_ref());
-        let remedy = "the path of a recipe file, relative to the layout file".to_string();
+        let remedy = "the path of a recipe file, relative to the layout file";
         FileError::at(layout_path, &layout_text, Some(layout.recipes.span()), found, remedy)
     })?;
     let files = compile_kitchen((layout_path, layout_text), (&recipes_path, recipes_text))?;
@@ -215,29 +213,23 @@ pub fn read_kitchen(layout_path: &Path) -> FileResult<KitchenWithSources> {
     Ok(files)
 }
 
-fn wrong_layout(path: &Path, text: &str, error: OutOfRange) -> FileError {
-    FileError::at(path, text, error.place, error.found, error.remedy)
-}
-
 /// The paths serve error messages only.
 pub fn compile_kitchen(layout: (&Path, String), recipes: (&Path, String)) -> FileResult<KitchenWithSources> {
     let layout_spec: LayoutSpec = parse(layout.0, &layout.1)?;
-    check_layout(&layout.1).map_err(|error| wrong_layout(layout.0, &layout.1, error))?;
+    let range = |OutOfRange { place, found, remedy, .. }| FileError::at(layout.0, &layout.1, place, found, remedy);
+    check_layout(&layout.1).map_err(range)?;
     let recipes_spec: RecipesSpec = parse(recipes.0, &recipes.1)?;
-    match Kitchen::compile(&layout_spec, &recipes_spec) {
-        Ok(kitchen) => {
-            let layout_text = RecordedFile { path: layout.0.display().to_string(), text: layout.1 };
-            let recipes_text = RecordedFile { path: layout_spec.recipes.into_inner(), text: recipes.1 };
-            Ok(KitchenWithSources { kitchen, layout: layout_text, recipes: recipes_text })
-        }
-        Err(KitchenFileError { file, span, found, remedy }) => {
-            let (path, text) = match file {
-                KitchenFileKind::Layout => (layout.0, &layout.1),
-                KitchenFileKind::Recipes => (recipes.0, &recipes.1),
-            };
-            Err(FileError::at(path, text, span, found, remedy))
-        }
-    }
+    let wrong = |KitchenFileError { file, span, found, remedy }| {
+        let (path, text) = match file {
+            KitchenFileKind::Layout => (layout.0, &layout.1),
+            KitchenFileKind::Recipes => (recipes.0, &recipes.1),
+        };
+        FileError::at(path, text, span, found, remedy)
+    };
+    let kitchen = Kitchen::compile(&layout_spec, &recipes_spec).map_err(wrong)?;
+    let layout = RecordedFile { path: layout.0.display().to_string(), text: layout.1 };
+    let recipes = RecordedFile { path: layout_spec.recipes.into_inner(), text: recipes.1 };
+    Ok(KitchenWithSources { kitchen, layout, recipes })
 }
 
 /// Whether the arm can reach all of the robot's buttons.
@@ -248,7 +240,7 @@ fn check_reach(path: &Path, text: &str, layout: &LayoutSpec, kitchen: &Kitchen) 
     let [x, y] = button.at_m;
     let place = layout.buttons().find(|spec| *spec.at_m.get_ref() == button.at_m).map(|spec| spec.at_m.span());
     let found = format!("the robot's button \"{}\" at x = {x} m, y = {y} m, {}", button.name, why.words());
-    let remedy = "a place about 0.2 to 0.75 m from the robot's base, and not beside or behind it".to_string();
+    let remedy = "a place about 0.2 to 0.75 m from the robot's base, and not beside or behind it";
     Err(FileError::at(path, text, place, found, remedy))
 }
 

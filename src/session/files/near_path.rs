@@ -6,13 +6,13 @@ use std::path::{Component, Path, PathBuf};
 use crate::files::carried;
 use tomcom_core::base::text;
 
-/// Where session files and recordings usually are.
-const SESSIONS: &str = "sessions";
+/// A lab's folder of session files and recordings.
+pub const SESSIONS: &str = "sessions";
 
 /// The existing or carried path that is nearest to a path that does not exist: each missing name is replaced by the most
 /// similar existing name, and a mere name is also looked for in `sessions/`. `None` if there is no similar path, or the
 /// path exists.
-pub fn nearest(path: &Path) -> Option<PathBuf> {
+fn nearest(path: &Path) -> Option<PathBuf> {
     let in_sessions = || {
         Some(Path::new(SESSIONS).join(path))
             .filter(|there| path.file_name() == Some(path.as_os_str()) && there.exists())

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::de::DeserializeOwned;
 
 use crate::SessionSpec;
-use crate::files::file_error::{FileError, FileResult};
+use crate::files::file_error::{FileError, FileResult, place_of};
 use crate::questionnaire::Questionnaire;
 use crate::tutorial::Tutorial;
 use tomcom_core::base::text::did_you_mean;
@@ -105,11 +105,57 @@ pub fn parse<T: ParsedFile>(path: &Path, text: &str) -> FileResult<T> {
     toml::from_str(text).map_err(|error| match FileKind::from_text(text).filter(|kind| *kind != T::KIND) {
         Some(other) => FileError::at(path, text, None, other.words().0.to_string(), right_file.to_string()),
         None => {
-            let (found, right) = told::<T>(text, &error);
+            let (span, (found, right)) = if let Some((span, line, right)) = mended(text, &error) {
+                (Some(span), (line, Some(right)))
+            } else if let Some((span, error)) = stray_table::<T>(text, &error) {
+                (Some(span), told::<T>("", &error))
+            } else {
+                (error.span(), told::<T>(text, &error))
+            };
             let remedy = right.map_or(right_file.to_string(), |right| format!("{right}; in {right_file}"));
-            FileError::at(path, text, error.span(), found, remedy)
+            FileError::at(path, text, span, found, remedy)
         }
     })
+}
+
+/// A line that lacks a quote or a bracket, with its place, and the line that was probably meant. The parser may notice only
+/// on the next line.
+fn mended(text: &str, error: &toml::de::Error) -> Option<(Range<usize>, String, String)> {
+    let parses = |text: &str| text.parse::<toml::Table>().is_ok();
+    if parses(text) {
+        return None;
+    }
+    let is_right = |line: &str| parses(line) || parses(&format!("list = [\n{line}\n]"));
+    let at = error.span()?.start;
+    let end = at + text.get(at..)?.find('\n').unwrap_or(text.len() - at);
+    let mut starts = 0;
+    let lines = text[..end].split_inclusive('\n').map(|line| {
+        starts += line.len();
+        (starts - line.len(), line.split("# ").next().unwrap_or(line).trim())
+    });
+    let lines: Vec<(usize, &str)> = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#')).collect();
+    let place = |start: usize, line: &str| start..start + line.len();
+    let Some(&(start, line)) = lines.iter().rev().take(2).find(|(_, line)| !is_right(line)) else {
+        // A list over several lines, of which the parser finds out at the next setting.
+        lines.last().filter(|(_, line)| parses(line))?;
+        let is_within = |line: &str| line.starts_with('[') || !line.ends_with(']');
+        let mut before = lines.iter().rev().skip(1).take_while(|(_, line)| is_within(line));
+        let &(start, line) = before.find(|(_, line)| line.ends_with('['))?;
+        return Some((place(start, line), format!("{line} without its end"), "] after the last entry".to_string()));
+    };
+    let (text, closing) = line.split_at(line.trim_end_matches([',', ']', '}', ' ']).len());
+    let meant = [format!("{text}\"{closing}"), format!("{line}]"), format!("[{line}"), format!("{line}}}")];
+    let right = meant.into_iter().find(|line| is_right(line))?;
+    Some((place(start, line), line.to_string(), right.trim_end_matches(',').to_string()))
+}
+
+/// The place of a table that no such file has, and the error about it, where the parser misses what stands in it: a
+/// misspelt `[plan]`, beside `[plan.familiarisation]`.
+fn stray_table<T: DeserializeOwned>(text: &str, error: &toml::de::Error) -> Option<(Range<usize>, toml::de::Error)> {
+    let known = settings_of::<T>("").filter(|_| error.message().starts_with("missing field"))?;
+    let table: toml::Table = text.parse().ok()?;
+    let stray = table.keys().find(|name| !known.contains(name))?;
+    Some((place_of(text, stray, 0)?, toml::from_str::<T>(&format!("[{stray}]\n")).err()?))
 }
 
 /// What the parser found, and what it expected instead, if it says so.

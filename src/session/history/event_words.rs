@@ -158,9 +158,7 @@ fn on_screen(screen: &WizardScreenContent) -> String {
 }
 
 fn verdict(stamped: &TimestampedEvent, follower: &SessionFollower) -> String {
-    let index = follower.judged.binary_search_by_key(&stamped.seq, |press| press.seq);
-    let judged = index.ok().map(|index| &follower.judged[index]);
-    match (&stamped.event, judged) {
+    match (&stamped.event, follower.judgement(stamped.seq).map(|(_, press)| press)) {
         (Event::Press { agent: Agent::Human, .. }, None) => " (does not count)".to_string(),
         (_, Some(press)) if press.verdict.error => {
             format!(" (error, {})", verdict_words(&follower.session.kitchen, press))
@@ -248,6 +246,14 @@ pub fn happening(kitchen: &Kitchen, what: &TimelineEvent) -> (&'static str, Stri
         }
         TimelineEvent::Trial(phase) => ("trial", trial(*phase).to_string()),
         TimelineEvent::Noted(event) => noted(event),
+    }
+}
+
+/// The words of a note.
+pub fn note(what: &TimelineEvent) -> Option<String> {
+    match what {
+        TimelineEvent::Noted(Event::Marker { note, observer }) => Some(noted_words(note, observer.as_deref())),
+        _ => None,
     }
 }
 

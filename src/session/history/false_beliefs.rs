@@ -12,8 +12,6 @@ use tomcom_core::mind::dirichlet::DirichletBelief;
 /// other events count at once.
 const EVERY_NS: u64 = 200_000_000;
 
-/// Largest number of false beliefs that are told before an error.
-const MOST_TOLD: usize = 3;
 /// Least duration of a false belief that lasts, in seconds.
 const LEAST_S: f64 = 1.0;
 
@@ -181,22 +179,18 @@ impl EstimatedFalseBeliefs {
         self.last(aspect, |began| began <= time, |ended| ended < time)
     }
 
-    /// What was believed wrong just before a press, in words: the false beliefs that began last, and how many more.
-    /// `before`: the kitchen before the press.
+    /// What was believed wrong just before a press, in words: what began last is first. `before`: the kitchen before it.
     pub fn told_before(&self, session: &Session, press: SessionTime, before: State) -> Option<String> {
         let kitchen = &session.kitchen;
         let aspects = (0..kitchen.aspects.len()).map(|index| AspectId(index as u8));
         let mut held: Vec<&EstimatedFalseBelief> = aspects.filter_map(|aspect| self.before(aspect, press)).collect();
         held.sort_by_key(|one| std::cmp::Reverse(one.began));
-        let told = held.iter().take(MOST_TOLD).map(|one| {
+        let told = held.iter().map(|one| {
             let since = session.trial_clock_at(one.began);
             // Another order can have come since it began.
             format!("{}: {} since {since}", wording::aspect(kitchen, before, one.aspect), one.told(kitchen))
         });
-        let more = held.len().saturating_sub(MOST_TOLD);
-        let more = (more > 0).then(|| format!("+{more} more"));
-        let told = told.chain(more).collect::<Vec<_>>().join("; ");
-        (!told.is_empty()).then(|| format!("believed wrong, by the estimate: {told}"))
+        (!held.is_empty()).then(|| format!("believed wrong, by the estimate: {}", told.collect::<Vec<_>>().join("; ")))
     }
 
     /// When the belief about an aspect that is false at a time became right; `None` if it has not.

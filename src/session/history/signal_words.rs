@@ -62,17 +62,13 @@ pub fn sent(follower: &SessionFollower, shown: &ShownSignalRecord) -> Vec<String
     parts.into_iter().flatten().collect()
 }
 
-/// Each signal that was shown with its sender, what became of it, whether it was a hit, and last what the assistant thought.
-pub fn told(follower: &SessionFollower) -> Vec<String> {
-    let verdicts = signal_verdicts(follower);
-    let told = |(nth, shown): (usize, &ShownSignalRecord)| {
-        let mut parts = sent(follower, shown);
-        parts.insert(1, outcome(follower, nth));
-        parts.insert(2, judged(follower, verdicts.as_deref(), nth));
-        parts.retain(|part| !part.is_empty());
-        parts.join("; ")
-    };
-    follower.signals.shown.iter().enumerate().map(told).collect()
+/// A signal with its sender, what became of it, whether it was a hit, and last what the assistant thought.
+pub fn told(follower: &SessionFollower, nth: usize) -> String {
+    let mut parts = sent(follower, &follower.signals.shown[nth]);
+    parts.insert(1, outcome(follower, nth));
+    parts.insert(2, judged(follower, signal_verdicts(follower).as_deref(), nth));
+    parts.retain(|part| !part.is_empty());
+    parts.join("; ")
 }
 
 /// Whether a signal was a hit, by the participant's own beliefs, as the study counts it: "hit: no, late". `verdicts`: those of
@@ -82,7 +78,7 @@ pub fn judged(follower: &SessionFollower, verdicts: Option<&[SignalVerdict]>, nt
         Some(SignalVerdict::Hit { .. }) => "hit: yes, about a false belief that led to errors".to_string(),
         Some(other) => format!("hit: no, {}", other.name()),
         None if follower.session.is_trial_over() => "hit: not known".to_string(),
-        None => "hit: not known before the trial is over".to_string(),
+        None => "hit: judged at the end of the trial".to_string(),
     }
 }
 

@@ -8,10 +8,9 @@ use crate::files::file_error::{FileError, FileResult, MAX_TEXT, read_bytes};
 use crate::files::replace_file;
 use crate::log::RecordingWriteError;
 use crate::log::decisions::check_single;
-use crate::log::rater_codes::{code_of, rows, text_of, wrong_line};
+use crate::log::rater_codes::{code_of, rows, table_bytes, text_of, wrong_line};
 use crate::person_code;
-use tomcom_core::measures::raters::{CodableErrors, ErrorCauseCode};
-use tomcom_core::measures::raters::{ConsensusCode, RaterConsensus};
+use tomcom_core::measures::raters::{CodableErrors, ConsensusCode, ErrorCauseCode, RaterConsensus};
 
 pub const CONSENSUS_NAME: &str = "consensus.csv";
 
@@ -45,12 +44,8 @@ pub fn read(folder: &Path, codable: &CodableErrors) -> FileResult<Option<RaterCo
             let found = format!("the raters {} and {}", raters[0], raters[1]);
             return Err(wrong(found, &format!("{} and {}, as in the lines before", into.raters[0], into.raters[1])));
         }
-        let from = [own(&before[1], &before[2]), own(&before[4], &before[5])];
-        let from = match from {
-            [Ok(one), Ok(other)] => [one, other],
-            [Err((found, remedy)), _] | [_, Err((found, remedy))] => return Err(wrong(found, remedy)),
-        };
-        let settled = ConsensusCode { code, from };
+        let own = |at: usize| own(&before[at], &before[at + 1]).map_err(|(found, remedy)| wrong(found, remedy));
+        let settled = ConsensusCode { code, from: [own(1)?, own(4)?] };
         if let Some(remedy) = settled.fault() {
             return Err(wrong(format!("press {press} with another cause than the one that both raters gave"), remedy));
         }
@@ -71,23 +66,18 @@ fn own(cause: &str, aspect: &str) -> Result<Option<ErrorCauseCode>, (String, &'s
 
 /// Programs that read the file meanwhile find the old one or the new one.
 pub fn write(folder: &Path, consensus: &RaterConsensus) -> Result<(), RecordingWriteError> {
-    let path = folder.join(CONSENSUS_NAME);
-    let failed = |reason| RecordingWriteError::unwritable(&path, reason);
-    let mut table = csv::Writer::from_writer(Vec::new());
-    let mut put = |fields: [&str; 9]| table.write_record(fields).map_err(std::io::Error::from);
-    put(COLUMNS).map_err(failed)?;
     let fields = |code: &Option<ErrorCauseCode>| {
         let kind = code.as_ref().map_or("", |code| code.kind().name());
         let aspect = code.as_ref().and_then(ErrorCauseCode::aspect).unwrap_or_default();
         [kind.to_string(), aspect.to_string()]
     };
-    for (press, settled) in &consensus.settled {
-        let [one, other] = &consensus.raters;
+    let rows = consensus.settled.iter().map(|(press, settled)| {
+        let [one, other] = consensus.raters.clone();
         let [[cause_1, aspect_1], [cause_2, aspect_2]] = settled.from.each_ref().map(fields);
         let [cause, aspect] = fields(&Some(settled.code.clone()));
-        let press = press.to_string();
-        put([one, &cause_1, &aspect_1, other, &cause_2, &aspect_2, &press, &cause, &aspect]).map_err(failed)?;
-    }
-    let bytes = table.into_inner().map_err(|error| failed(std::io::Error::other(error.to_string())))?;
-    replace_file::replace(&path, &bytes).map_err(failed)
+        [one, cause_1, aspect_1, other, cause_2, aspect_2, press.to_string(), cause, aspect]
+    });
+    let path = folder.join(CONSENSUS_NAME);
+    let written = table_bytes(COLUMNS, rows).and_then(|bytes| replace_file::replace(&path, &bytes));
+    written.map_err(|reason| RecordingWriteError::unwritable(&path, reason))
 }

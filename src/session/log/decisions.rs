@@ -66,8 +66,7 @@ fn read_decisions<Decisions: DeserializeOwned + Default>(path: &Path, remedy: &s
         }
         Err(reason) => return Err(FileError::unreadable(path, reason, "a readable text file (UTF-8)")),
     };
-    toml::from_str(&text)
-        .map_err(|error| FileError::at(path, &text, error.span(), error.message().to_string(), remedy.to_string()))
+    toml::from_str(&text).map_err(|error| FileError::at(path, &text, error.span(), error.message().to_string(), remedy))
 }
 
 /// The folder must have no copy of this file, such as file managers and sync programs make: it could have another
@@ -145,19 +144,20 @@ pub fn is_excluded(log: &mut LogReader) -> FileResult<bool> {
 /// Records whether analyses count a closed recording. It is an error if the recording is being written or is continued
 /// by a later part, or if it is to be included although it is not excluded.
 pub fn rule(recording: &Path, excluded: bool, reason: &str) -> Result<ExclusionRecord, DecisionError> {
-    decide(
-        recording,
-        ExclusionRecord { excluded, reason: reason.to_string(), at: String::new(), of_participant: false },
-    )
+    decide(recording, excluded, reason, false)
 }
 
 /// Likewise, as one of all recordings of the participant.
 pub fn rule_participant(recording: &Path, excluded: bool, reason: &str) -> Result<ExclusionRecord, DecisionError> {
-    decide(recording, ExclusionRecord { excluded, reason: reason.to_string(), at: String::new(), of_participant: true })
+    decide(recording, excluded, reason, true)
 }
 
-fn decide(recording: &Path, ruling: ExclusionRecord) -> Result<ExclusionRecord, DecisionError> {
-    let (excluded, reason) = (ruling.excluded, &ruling.reason);
+fn decide(
+    recording: &Path,
+    excluded: bool,
+    reason: &str,
+    of_participant: bool,
+) -> Result<ExclusionRecord, DecisionError> {
     check_reason(reason, !excluded)?;
     let mut log = LogReader::open(recording)?;
     let folder = &log.folder().to_path_buf();
@@ -168,7 +168,8 @@ fn decide(recording: &Path, ruling: ExclusionRecord) -> Result<ExclusionRecord, 
         let found = format!("no exclusion of {}", recording.display());
         return Err(DecisionError::Unfit { found, remedy: "a recording that is excluded".to_string() });
     }
-    let ruling = ExclusionRecord { at: WallTime::now().rfc3339(), ..ruling };
+    let (reason, at) = (reason.to_string(), WallTime::now().rfc3339());
+    let ruling = ExclusionRecord { excluded, reason, at, of_participant };
     all.ruling.push(ruling.clone());
     write_decisions(&folder.join(EXCLUSION_NAME), &all)?;
     Ok(ruling)

@@ -69,9 +69,9 @@ pub(crate) fn code_file_names(folder: &Path) -> FileResult<BTreeSet<String>> {
     for entry in fs::read_dir(folder).map_err(unreadable)? {
         let name = entry.map_err(unreadable)?.file_name().to_string_lossy().into_owned();
         if is_named_as_codes(&name, &SPREADSHEETS) {
-            let found = "what looks like the codes of a rater in a spreadsheet's file, which is not read".to_string();
+            let found = "what looks like the codes of a rater in a spreadsheet's file, which is not read";
             let remedy = "the table saved as CSV (UTF-8) under the name codes-RATER.csv, and this file moved elsewhere";
-            return Err(FileError::from_finding(&folder.join(name), found, remedy.to_string()));
+            return Err(FileError::from_finding(&folder.join(name), found, remedy));
         }
         let is_renamed = || name.to_ascii_lowercase().ends_with(".csv") && is_one_raters(&folder.join(&name));
         if is_codes_file(&name) || is_renamed() {
@@ -117,11 +117,8 @@ fn code_files(folder: &Path) -> FileResult<BTreeMap<String, CodeFile>> {
         }
         if let Some((line, before, ..)) = rows.iter().find(|(_, before, ..)| before[0] != rater) {
             let found = format!("codes of {}, after codes of {rater}", before[0]);
-            return wrong(
-                *line,
-                found,
-                "codes of one rater; a table of several raters: tomcom codes RECORDING --import",
-            );
+            let remedy = "codes of one rater; a table of several raters: tomcom codes RECORDING --import";
+            return wrong(*line, found, remedy);
         }
         let own = file_name(&rater);
         if *name != own {
@@ -136,11 +133,7 @@ fn code_files(folder: &Path) -> FileResult<BTreeMap<String, CodeFile>> {
         }
         if let Some(other) = person_code::differing_in_case(&rater, files.keys().map(String::as_str)) {
             let found = format!("codes of {rater}, beside codes of {other}");
-            return Err(FileError::from_finding(
-                &path,
-                found,
-                "one rater: rename the file, and the rater in it".to_string(),
-            ));
+            return Err(FileError::from_finding(&path, found, "one rater: rename the file, and the rater in it"));
         }
         files.insert(rater, CodeFile { path, text, rows });
     }
@@ -171,15 +164,25 @@ pub fn read_all(folder: &Path, codable: &CodableErrors) -> FileResult<BTreeMap<S
 /// Programs that read the file meanwhile find the old one or the new one.
 pub fn write(folder: &Path, rater: &str, codes: &RaterCodes) -> Result<(), RecordingWriteError> {
     let path = folder.join(file_name(rater));
-    let failed = |reason| RecordingWriteError::unwritable(&path, reason);
+    let row = |(press, code): (&u64, &ErrorCauseCode)| {
+        let aspect = code.aspect().unwrap_or_default();
+        [rater.to_string(), press.to_string(), code.kind().name().to_string(), aspect.to_string()]
+    };
+    let written = table_bytes(COLUMNS, codes.0.iter().map(row)).and_then(|bytes| replace_file::replace(&path, &bytes));
+    written.map_err(|reason| RecordingWriteError::unwritable(&path, reason))
+}
+
+/// A table with these columns and rows, as CSV.
+pub(super) fn table_bytes<const N: usize>(
+    columns: [&str; N],
+    rows: impl Iterator<Item = [String; N]>,
+) -> io::Result<Vec<u8>> {
     let mut table = csv::Writer::from_writer(Vec::new());
-    let mut put = |fields: [&str; 4]| table.write_record(fields).map_err(io::Error::from);
-    put(COLUMNS).map_err(failed)?;
-    for (press, code) in &codes.0 {
-        put([rater, &press.to_string(), code.kind().name(), code.aspect().unwrap_or_default()]).map_err(failed)?;
+    table.write_record(columns)?;
+    for row in rows {
+        table.write_record(row)?;
     }
-    let bytes = table.into_inner().map_err(|error| failed(io::Error::other(error.to_string())))?;
-    replace_file::replace(&path, &bytes).map_err(failed)
+    table.into_inner().map_err(|error| io::Error::other(error.to_string()))
 }
 
 pub fn read_export(path: &Path) -> FileResult<(String, Vec<RaterCodeRow>)> {
@@ -187,7 +190,7 @@ pub fn read_export(path: &Path) -> FileResult<(String, Vec<RaterCodeRow>)> {
     let bytes =
         bytes.map_err(|reason| FileError::unreadable(path, reason, "the path of a readable text file (UTF-8)"))?;
     let head = overwrite::first_line(&bytes);
-    let wrong = |found: &str, remedy: &str| Err(FileError::from_finding(path, found.to_string(), remedy.to_string()));
+    let wrong = |found: &str, remedy: &str| Err(FileError::from_finding(path, found, remedy));
     if head == COLUMNS.join(",").as_bytes() {
         return wrong("one rater's codes of one recording", OWN_FILE);
     }
@@ -208,17 +211,12 @@ pub fn write_export(path: &Path, rows: &[RaterCodeRow]) -> FileResult<()> {
     let failed = |reason| FileError::unwritable(path, reason);
     let is_own = |head: &[u8]| overwrite::first_line(head) == EXPORT_COLUMNS.join(",").as_bytes();
     overwrite::check(path, "an export of raters' codes", is_own).map_err(failed)?;
-    let write = || -> io::Result<()> {
-        let mut table = csv::Writer::from_writer(Vec::new());
-        table.write_record(EXPORT_COLUMNS)?;
-        for row in rows {
-            let (press, kind) = (row.press.to_string(), row.code.kind().name());
-            table.write_record([&row.recording, &row.rater, &press, kind, row.code.aspect().unwrap_or_default()])?;
-        }
-        let bytes = table.into_inner().map_err(|error| io::Error::other(error.to_string()))?;
-        overwrite::write(path, &bytes)
+    let row = |RaterCodeRow { recording, rater, press, code, .. }: &RaterCodeRow| {
+        let (kind, aspect) = (code.kind().name().to_string(), code.aspect().unwrap_or_default().to_string());
+        [recording.clone(), rater.clone(), press.to_string(), kind, aspect]
     };
-    write().map_err(failed)
+    let written = table_bytes(EXPORT_COLUMNS, rows.iter().map(row)).and_then(|bytes| overwrite::write(path, &bytes));
+    written.map_err(failed)
 }
 
 pub(super) fn text_of(path: &Path, bytes: Vec<u8>) -> FileResult<String> {
@@ -233,7 +231,7 @@ pub(super) fn text_of(path: &Path, bytes: Vec<u8>) -> FileResult<String> {
 pub fn wrong_line(path: &Path, text: &str, line: usize, found: String, remedy: &str) -> FileError {
     let before: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
     let length = text[before..].lines().next().map_or(0, str::len);
-    FileError::at(path, text, Some(before..before + length), found, remedy.to_string())
+    FileError::at(path, text, Some(before..before + length), found, remedy)
 }
 
 /// Line number, cells before the code, sequence number of the press, and code.

@@ -112,8 +112,7 @@ impl LogReader {
         let line = first_line(&mut input).map_err(|reason| FileError::unreadable(&path, reason, remedy))?;
         if ends_in_header(&line) {
             let found = "a log that ends before the end of its header, which happens in a power failure".to_string();
-            let remedy =
-                "a recording with a whole header; tomcom simulate makes a simulated recording again".to_string();
+            let remedy = "a recording with a whole header; tomcom simulate makes a simulated recording again";
             return Err(at_line(&path, 1, &String::from_utf8_lossy(&line), line.len(), found, remedy));
         }
         let text = String::from_utf8_lossy(&line).into_owned();
@@ -128,19 +127,17 @@ impl LogReader {
         let recipes = (Path::new(&header.recipes.path), header.recipes.text.clone());
         let kitchen = Arc::new(compile_kitchen(layout, recipes)?.kitchen);
         header.session.check_kitchen(&kitchen).map_err(|error| wrong_setting(&path, text, error))?;
-        let (path, offset) = (Arc::from(path), line.len() as u64);
-        let (partial, blank) = (Vec::new(), None);
         Ok(LogReader {
             header,
             kitchen,
-            path,
-            offset,
+            path: Arc::from(path),
+            offset: line.len() as u64,
             before,
             input,
             number: 1,
             next_seq,
-            partial,
-            blank,
+            partial: Vec::new(),
+            blank: None,
             ended: false,
             without_end: false,
         })
@@ -204,11 +201,8 @@ impl LogReader {
         let stamped: TimestampedEvent = serde_json::from_str(&text)
             .map_err(|error| self.wrong(&text, error.column().saturating_sub(1), &json_message(&error)))?;
         if stamped.seq != self.next_seq {
-            return Err(self.wrong(
-                &text,
-                0,
-                &format!("an event with seq {}, where seq {} comes next", stamped.seq, self.next_seq),
-            ));
+            let found = format!("an event with seq {}, where seq {} comes next", stamped.seq, self.next_seq);
+            return Err(self.wrong(&text, 0, &found));
         }
         self.ended = stamped.event == Event::SessionEnded;
         if self.ended && self.without_end {
@@ -240,13 +234,11 @@ impl LogReader {
             return Ok(());
         }
         let found = match self.path.exists() {
-            true => "another file in the place of the log that was followed".to_string(),
-            false => "no log any more: it was removed or moved while it was followed".to_string(),
+            true => "another file in the place of the log that was followed",
+            false => "no log any more: it was removed or moved while it was followed",
         };
-        let remedy =
-            "the folder in which the recording is now, if its session goes on; the session's own console says where \
-                      what was recorded is saved"
-                .to_string();
+        let remedy = "the folder in which the recording is now, if its session goes on; the session's own console says where \
+                      what was recorded is saved";
         Err(FileError::from_finding(&self.path, found, remedy))
     }
 
@@ -305,7 +297,7 @@ impl LogReader {
 
     fn wrong(&self, text: &str, column: usize, found: &str) -> FileError {
         let remedy = "one event of a tomcom log, numbered without gaps";
-        at_line(&self.path, self.number.max(1), text, column, found.to_string(), remedy.to_string())
+        at_line(&self.path, self.number.max(1), text, column, found.to_string(), remedy)
     }
 }
 
@@ -318,7 +310,7 @@ fn open_before(
 ) -> FileResult<LogReader> {
     let wrong = |found: String, remedy: &str| {
         let column = text.find("\"continues\"").unwrap_or(0);
-        at_line(path, 1, text, column, found, remedy.to_string())
+        at_line(path, 1, text, column, found, remedy)
     };
     let name = &before.recording;
     let is_name = !name.is_empty() && name != ".." && name != "." && !name.contains(['/', '\\']);
@@ -326,10 +318,8 @@ fn open_before(
         return Err(wrong(format!("continues \"{name}\""), "the name of a folder beside this one"));
     }
     if parts == 0 {
-        return Err(wrong(
-            format!("more than {MAX_PARTS} parts"),
-            "parts of a recording that lead back to a first part",
-        ));
+        let remedy = "parts of a recording that lead back to a first part";
+        return Err(wrong(format!("more than {MAX_PARTS} parts"), remedy));
     }
     // The path is resolved, so that the folder of the previous part is also found from a path like `.`.
     let log = path.canonicalize().map_err(|reason| FileError::unreadable(path, reason, "a readable recording"))?;
@@ -341,10 +331,8 @@ fn open_before(
     };
     let folder = beside.join(name);
     if !folder.join(LOG_NAME).exists() {
-        return Err(wrong(
-            format!("a part that continues {name}, a recording that is not there"),
-            "that recording, in a folder beside this",
-        ));
+        let found = format!("a part that continues {name}, a recording that is not there");
+        return Err(wrong(found, "that recording, in a folder beside this"));
     }
     let first = LogReader::open_part(&folder, parts - 1)?;
     let same = |other: &LogHeader| {
@@ -376,7 +364,14 @@ pub fn first_line(log: &mut impl BufRead) -> io::Result<Vec<u8>> {
 }
 
 /// An error in one line of a long file; the excerpt in the message keeps the line's number.
-pub fn at_line(path: &Path, number: usize, text: &str, column: usize, found: String, remedy: String) -> FileError {
+pub fn at_line(
+    path: &Path,
+    number: usize,
+    text: &str,
+    column: usize,
+    found: String,
+    remedy: impl Into<String>,
+) -> FileError {
     let is_boundary = |index: &usize| text.is_char_boundary(*index);
     let column = (0..=column.min(text.len())).rev().find(is_boundary).unwrap_or(0);
     let start = (0..=column.saturating_sub(60)).rev().find(is_boundary).unwrap_or(0);

@@ -3,7 +3,7 @@
 //! written by one of them.
 
 use std::fs;
-use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use crate::files::file_error::{open_regular, read_regular};
@@ -11,10 +11,7 @@ use crate::log::lock::RecordingLock;
 use crate::log::reader::{ends_in_header, first_line};
 use crate::log::writer::is_written_settings;
 use crate::log::{LOG_NAME, LogReader, LogWriter, RecordingWriteError, SETTINGS_NAME, move_aside};
-use crate::{Event, LogHeader, TimestampedEvent};
-
-/// Longest last line of a complete log, in bytes.
-const LAST: u64 = 256;
+use crate::{Event, LogHeader};
 
 #[derive(Debug)]
 pub enum SimulatedLogState {
@@ -55,26 +52,21 @@ impl SimulatedLogState {
 /// A simulation may replace a recording with the same header, and a log that ends within its header.
 pub fn check_simulated(folder: &Path, header: &LogHeader) -> Result<(), RecordingWriteError> {
     let path = folder.join(LOG_NAME);
+    let taken = |what: &str| Err(RecordingWriteError::Taken { folder: folder.to_path_buf(), what: what.to_string() });
     if !path.exists() {
         // A program that was killed before it wrote the log leaves a settings file behind.
         let is_foreign = read_regular(&folder.join(SETTINGS_NAME)).is_ok_and(|text| !is_written_settings(&text));
-        let what = "a session.toml that tomcom did not write".to_string();
-        return if is_foreign {
-            Err(RecordingWriteError::Taken { folder: folder.to_path_buf(), what })
-        } else {
-            Ok(())
-        };
+        return if is_foreign { taken("a session.toml that tomcom did not write") } else { Ok(()) };
     }
     if is_without_header(&path) {
         return Ok(());
     }
-    let what = match LogReader::open(folder).map(|log| log.header) {
-        Ok(there) if there == *header => return Ok(()),
-        Ok(there) if there.started.is_some() => "a live recording".to_string(),
-        Ok(_) => "the recording of another session".to_string(),
-        Err(error) => format!("a recording that cannot be read ({})", error.with_remedy()),
-    };
-    Err(RecordingWriteError::Taken { folder: folder.to_path_buf(), what })
+    match LogReader::open(folder).map(|log| log.header) {
+        Ok(there) if there == *header => Ok(()),
+        Ok(there) if there.started.is_some() => taken("a live recording"),
+        Ok(_) => taken("the recording of another session"),
+        Err(error) => taken(&format!("a recording that cannot be read ({})", error.with_remedy())),
+    }
 }
 
 fn is_without_header(path: &Path) -> bool {
@@ -84,16 +76,9 @@ fn is_without_header(path: &Path) -> bool {
 
 /// Whether the folder contains the complete recording with this header.
 fn is_whole(folder: &Path, header: &LogHeader) -> bool {
-    let ends = || -> io::Result<bool> {
-        let mut log = open_regular(&folder.join(LOG_NAME))?;
-        let length = log.seek(SeekFrom::End(0))?;
-        log.seek(SeekFrom::Start(length.saturating_sub(LAST)))?;
-        let mut end = Vec::new();
-        log.read_to_end(&mut end)?;
-        let last =
-            end.strip_suffix(b"\n").and_then(|lines| lines.trim_ascii_end().rsplit(|&byte| byte == b'\n').next());
-        let last = last.and_then(|line| serde_json::from_slice::<TimestampedEvent>(line).ok());
-        Ok(last.is_some_and(|last| last.event == Event::SessionEnded))
+    let is_same = |log: LogReader| {
+        let last = log.last_event().ok().flatten();
+        log.header == *header && last.is_some_and(|last| last.event == Event::SessionEnded)
     };
-    ends().unwrap_or(false) && LogReader::open(folder).is_ok_and(|log| log.header == *header)
+    folder.join(LOG_NAME).exists() && LogReader::open(folder).is_ok_and(is_same)
 }

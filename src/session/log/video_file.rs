@@ -128,7 +128,7 @@ pub fn read(folder: &Path) -> FileResult<RecordingFilms> {
     let films: RecordingFilms = serde_json::from_str(&text).map_err(|error| {
         let before: usize = text.split_inclusive('\n').take(error.line().saturating_sub(1)).map(str::len).sum();
         let place = before + error.column().saturating_sub(1);
-        FileError::at(&path, &text, Some(place..place), error.to_string(), REMEDY.to_string())
+        FileError::at(&path, &text, Some(place..place), error.to_string(), REMEDY)
     })?;
     let is_fit = |film: &AttachedFilm| {
         let is_place = |file: &PathText| is_name(file) || file.is_absolute();
@@ -138,7 +138,7 @@ pub fn read(folder: &Path) -> FileResult<RecordingFilms> {
         None => Ok(films),
         Some(film) => {
             let found = format!("the film \"{}\", which is no name of a file here and no whole path", film.file);
-            Err(FileError::from_finding(&path, found, REMEDY.to_string()))
+            Err(FileError::from_finding(&path, found, REMEDY))
         }
     }
 }

@@ -138,7 +138,7 @@ impl LogWriter {
     /// place, or else below the system's folder for temporary files. Every check compares a part of the log with what
     /// was written, or `whole`, all of it.
     pub fn check(&mut self, whole: bool) -> Result<(), RecordingWriteError> {
-        if !is_same(self.out.get_ref().file(), &self.path) {
+        if !is_same(&self.out.get_ref().file, &self.path) {
             let found = if self.path.exists() { "another file took its place" } else { "its folder was removed" };
             let reason = io::Error::new(io::ErrorKind::NotFound, found);
             return Err(RecordingWriteError::Unwritable { path: self.path.clone(), reason, saved: self.rescue(false) });
@@ -303,18 +303,14 @@ impl GuardedFile {
     }
 
     /// The copy is in the system's folder for temporary files, or else in this folder.
-    pub(crate) fn guarded(file: File, folder: &Path) -> GuardedFile {
+    fn guarded(file: File, folder: &Path) -> GuardedFile {
         let copy = tempfile::tempfile().or_else(|_| tempfile::tempfile_in(folder)).ok();
         GuardedFile { copy, ..GuardedFile::unguarded(file) }
     }
 
-    pub(crate) fn file(&self) -> &File {
-        &self.file
-    }
-
     /// Compares the length, the end and the next stretch of the log with what was written, or the whole log; returns
     /// the damage in words.
-    pub(crate) fn damage(&mut self, whole: bool) -> Option<String> {
+    fn damage(&mut self, whole: bool) -> Option<String> {
         let length = match self.file.metadata() {
             Ok(data) => data.len(),
             Err(reason) => return Some(format!("cannot be read to be checked: {reason}")),
@@ -374,7 +370,7 @@ impl GuardedFile {
     }
 
     /// From the guarding copy, or from the log itself if it is undamaged.
-    pub(crate) fn save(&mut self, is_damaged: bool, to: &mut File) -> io::Result<()> {
+    fn save(&mut self, is_damaged: bool, to: &mut File) -> io::Result<()> {
         let from = match (&mut self.copy, is_damaged) {
             (Some(copy), _) => copy,
             (None, false) => &mut self.file,

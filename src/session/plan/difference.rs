@@ -7,7 +7,7 @@ use std::fmt;
 use serde_json::{Value, json};
 
 use crate::header::RecordedFile;
-use crate::plan::{PhaseSpec, PlanPosition, Study, WantedRecording};
+use crate::plan::{PhaseSpec, PlanPosition, Questionnaire, Study, WantedRecording};
 use crate::{LogHeader, SessionSpec};
 
 /// What cannot change a trial: addresses, viewers, appearance and texts of the wizard's console. Who takes part in a
@@ -125,6 +125,19 @@ impl fmt::Display for PlanDifference {
 }
 
 impl Study {
+    /// What participants are taught and asked that is not as in another version of the plan.
+    pub fn texts_changed_since(&self, before: &Study) -> Vec<PlanDifference> {
+        let texts = |study: &Study| {
+            let mut values = BTreeMap::new();
+            for asked in &study.questionnaires {
+                collect(by_item(asked), &format!("questionnaire {}", asked.name), &mut values);
+            }
+            collect(json!(study.tutorial), "tutorial", &mut values);
+            values
+        };
+        differing(&texts(before), &texts(self))
+    }
+
     /// What has changed since a recording of the plan that has another digest, as far as the recording shows. `kitchen`:
     /// layout and recipes as they are now.
     pub fn changed_since(&self, recorded: &LogHeader, kitchen: [&RecordedFile; 2]) -> Vec<PlanDifference> {
@@ -211,18 +224,27 @@ impl PlanPosition {
                 }
             }
         }
-        let paths: BTreeSet<&String> = before.keys().chain(after.keys()).collect();
-        let differs = paths.into_iter().filter(|path| before.get(*path) != after.get(*path));
-        let value =
-            |values: &BTreeMap<String, Value>, path: &str| values.get(path).filter(|value| !value.is_null()).cloned();
-        let one = |path: &String| PlanDifference {
-            path: path.clone(),
-            nth: 0,
-            values: [value(&before, path), value(&after, path)],
-        };
-        found.extend(differs.map(one).filter(|one| one.values.iter().any(Option::is_some)));
+        found.extend(differing(&before, &after));
         found
     }
+}
+
+/// The values that differ, by their paths.
+fn differing(before: &BTreeMap<String, Value>, now: &BTreeMap<String, Value>) -> Vec<PlanDifference> {
+    let paths: BTreeSet<&String> = before.keys().chain(now.keys()).collect();
+    let differs = paths.into_iter().filter(|path| before.get(*path) != now.get(*path));
+    let value =
+        |values: &BTreeMap<String, Value>, path: &str| values.get(path).filter(|value| !value.is_null()).cloned();
+    let one =
+        |path: &String| PlanDifference { path: path.clone(), nth: 0, values: [value(before, path), value(now, path)] };
+    differs.map(one).filter(|one| one.values.iter().any(Option::is_some)).collect()
+}
+
+/// With its items by their ids, so that a new one is one difference.
+fn by_item(questionnaire: &Questionnaire) -> Value {
+    let mut whole = json!(questionnaire);
+    whole["item"] = Value::Object(questionnaire.items.iter().map(|item| (item.id.clone(), json!(item))).collect());
+    whole
 }
 
 impl PhaseSpec {
@@ -233,7 +255,7 @@ impl PhaseSpec {
             PhaseSpec::Debriefing { steps } => Some(("plan.debriefing".to_string(), json!(steps))),
             PhaseSpec::Tutorial { tutorial } => Some(("tutorial".to_string(), json!(tutorial))),
             PhaseSpec::Questionnaire { questionnaire } => {
-                Some((format!("questionnaire {}", questionnaire.name), json!(questionnaire)))
+                Some((format!("questionnaire {}", questionnaire.name), by_item(questionnaire)))
             }
             PhaseSpec::Familiarisation | PhaseSpec::Trial => None,
         }

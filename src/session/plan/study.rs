@@ -167,8 +167,8 @@ impl Study {
         Some(spec)
     }
 
-    /// What somebody who reads the plan may not expect of it: questionnaires that are not asked after every trial, and texts
-    /// in another language than that of the participant's display.
+    /// What somebody who reads the plan may not expect of it: questionnaires that are not asked after every trial, texts in
+    /// another language than that of the participant's display, and a tutorial that is left out.
     pub fn remarks(&self) -> Vec<String> {
         let trials = self.plan.conditions.len() as u32;
         let mut remarks = Vec::new();
@@ -195,6 +195,9 @@ impl Study {
             .collect();
         if !others.is_empty() {
             remarks.push(format!("the display's language is \"{language}\", but not that of {}", others.join(", ")));
+        }
+        if self.tutorial.is_some() && self.session.participant.kind != ParticipantKind::Display {
+            remarks.push("the tutorial is left out, since only the participant's display shows it".to_string());
         }
         remarks
     }
@@ -281,6 +284,7 @@ pub struct PlanRecording {
     pub code: String,
     /// The code in the log, if it was corrected afterwards.
     pub recorded_as: Option<String>,
+    pub kind: ParticipantKind,
     /// Of a corrected recording, that of the other participant.
     pub step: PlanPosition,
     pub consent: bool,
@@ -414,6 +418,9 @@ pub struct ParticipantProgress {
     /// Index in the plan.
     #[serde(skip)]
     pub participant: usize,
+    /// In the participant's last recording, if it is not that of the session file.
+    #[serde(skip)]
+    pub kind: Option<ParticipantKind>,
     pub group: String,
     pub consent: bool,
     #[serde(skip)]
@@ -445,10 +452,11 @@ impl ParticipantProgress {
             slots.iter().map(|slot| PlannedTrialProgress::from_recordings(study, *slot, &own)).collect();
         let next =
             steps.iter().enumerate().find_map(|(index, stand)| stand.next(index)).unwrap_or(NextRecording::Finished);
+        let kind = own.last().map(|made| made.kind).filter(|kind| *kind != study.session.participant.kind);
         let consent = own.iter().any(|made| made.consent);
         let instructed = own.iter().any(|made| made.instructed);
         let answered = own.iter().flat_map(|made| made.answered.iter().cloned()).collect();
-        Ok(ParticipantProgress { code, participant, group, consent, instructed, answered, steps, next })
+        Ok(ParticipantProgress { code, participant, kind, group, consent, instructed, answered, steps, next })
     }
 
     /// Settings of a recording with the participant, and the number of its trial. What is asked once before the trials is

@@ -7,14 +7,13 @@ use serde::Serialize;
 use crate::analysis::lesson_report::WizardTrainingSummary;
 use crate::analysis::offer_summary::{OfferSummary, TimedOffer};
 use crate::analysis::recording_summary::ExclusionStatus;
+use crate::grouping::grouped;
 use tomcom_core::base::text::{count, decimal};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::recommendation::Recommendation;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{AspectId, Kitchen};
 use tomcom_core::measures::matching::{CommunicationEvent, MatchCounts, MatchShares, Similarity, WINDOW};
-use tomcom_session::apply::ApplyError;
 use tomcom_session::event::WizardScreenContent;
 use tomcom_session::history::belief_track::AspectBeliefSnapshot;
 use tomcom_session::history::comparison::{Communication, SenderComparison, UnmatchedCommunication};
@@ -23,7 +22,6 @@ use tomcom_session::settings::Condition;
 use tomcom_session::study_arm::StudyArm;
 use tomcom_session::watcher::{SenderComparisonFollower, SenderComparisonSettings};
 use tomcom_session::wizard_log::{self, WizardSummary};
-use tomcom_session::{Session, TimestampedEvent};
 
 const LISTED: usize = 20;
 
@@ -120,18 +118,14 @@ impl ComparisonSummary {
             let said: Vec<Vec<CommunicationEvent>> = one.comparison.lanes.iter().map(|lane| lane.said()).collect();
             for (a, b) in (0..said.len()).flat_map(|a| (a + 1..said.len()).map(move |b| (a, b))) {
                 let [of, with] = [a, b].map(|lane| one.comparison.lanes[lane].name.clone());
-                let is_it = |(pair, _): &&mut (SenderPairSummary, MatchCounts)| pair.of == of && pair.with == with;
-                let window = one.comparison.window;
-                let add = |tally: &mut MatchCounts| tally.add(&said[a], &said[b], one.follower.presses(), window);
-                match pairs.iter_mut().find(is_it) {
-                    Some((_, tally)) => add(tally),
-                    None => {
-                        let mut tally = MatchCounts::default();
-                        add(&mut tally);
-                        let similarity = Similarity::default();
-                        pairs.push((SenderPairSummary { of, with, window_actions: window, similarity }, tally));
-                    }
-                }
+                let (window, similarity) = (one.comparison.window, Similarity::default());
+                let known = pairs.iter().position(|(pair, _)| pair.of == of && pair.with == with);
+                let index = known.unwrap_or_else(|| {
+                    let pair = SenderPairSummary { of, with, window_actions: window, similarity };
+                    pairs.push((pair, MatchCounts::default()));
+                    pairs.len() - 1
+                });
+                pairs[index].1.add(&said[a], &said[b], one.follower.presses(), window);
             }
         }
         let pairs = pairs.into_iter().map(|(pair, tally)| SenderPairSummary { similarity: tally.similarity(), ..pair });
@@ -262,7 +256,7 @@ pub fn describe(figures: &ComparisonSummary, request: &SenderComparisonSettings)
                 flags(request),
                 first.number,
                 one.recording,
-                SessionTime::from_secs_f64(first.spoken.clock_s)
+                SessionTime::from_secs_f64(first.spoken.clock_s).with_ms()
             );
         }
     }
@@ -283,16 +277,9 @@ fn flags(request: &SenderComparisonSettings) -> String {
 
 /// The unmatched communications as text, by sender, the session's own concept first; they are numbered by time.
 fn describe_differences(differences: &[UnmatchedCommunicationSummary]) -> String {
-    let mut groups: Vec<(String, Vec<&UnmatchedCommunicationSummary>)> = Vec::new();
     let mut sorted: Vec<&UnmatchedCommunicationSummary> = differences.iter().collect();
     sorted.sort_by_key(|one| one.rank());
-    for one in sorted {
-        let who = format!("only {}, not {}", one.by, one.not_by);
-        match groups.iter_mut().find(|(of, _)| *of == who) {
-            Some((_, group)) => group.push(one),
-            None => groups.push((who, vec![one])),
-        }
-    }
+    let groups = grouped(sorted.into_iter().map(|one| (format!("only {}, not {}", one.by, one.not_by), one)));
     let sums: Vec<String> = groups.iter().map(|(who, group)| format!("{} {who}", group.len())).collect();
     let mut text = match differences.len() as u64 {
         0 => return "no differences\n".to_string(),
@@ -338,35 +325,6 @@ fn describe_pair(pair: &SenderPairSummary) -> String {
     )
 }
 
-pub struct SenderComparer {
-    follower: SenderComparisonFollower,
-}
-
-impl SenderComparer {
-    pub fn new(session: Session, request: &SenderComparisonSettings) -> SenderComparer {
-        let cost = CostToGo::new(session.kitchen.clone());
-        SenderComparer { follower: SenderComparisonFollower::new(session, cost, request) }
-    }
-
-    /// Applies the next event of the recording. Errors: it is not possible in the session's present state.
-    pub fn add(&mut self, stamped: &TimestampedEvent) -> Result<(), ApplyError> {
-        self.follower.apply(stamped).map(drop)
-    }
-
-    pub fn session(&self) -> &Session {
-        &self.follower.follower.session
-    }
-
-    pub fn finish(mut self, recording: String, standing: ExclusionStatus) -> RecordingSenderComparison {
-        self.follower.finish();
-        let comparison = self.follower.comparison(true);
-        let is_wizards = self.session().spec.trial.condition == Condition::Wizard;
-        let wizard = is_wizards.then(|| WizardSummary::from_follower(&self.follower.follower));
-        let offers = OfferSummary::from_offers(&TimedOffer::visible(self.session()));
-        RecordingSenderComparison { recording, follower: self.follower, standing, comparison, wizard, offers }
-    }
-}
-
 pub struct RecordingSenderComparison {
     pub recording: String,
     pub follower: SenderComparisonFollower,
@@ -377,6 +335,21 @@ pub struct RecordingSenderComparison {
 }
 
 impl RecordingSenderComparison {
+    /// The comparison of a recording that the follower has read to its end.
+    pub fn new(
+        recording: String,
+        mut follower: SenderComparisonFollower,
+        standing: ExclusionStatus,
+    ) -> RecordingSenderComparison {
+        follower.finish();
+        let comparison = follower.comparison(true);
+        let session = &follower.follower.session;
+        let is_wizards = session.spec.trial.condition == Condition::Wizard;
+        let wizard = is_wizards.then(|| WizardSummary::from_follower(&follower.follower));
+        let offers = OfferSummary::from_offers(&TimedOffer::visible(session));
+        RecordingSenderComparison { recording, follower, standing, comparison, wizard, offers }
+    }
+
     pub fn kitchen(&self) -> &Kitchen {
         &self.follower.follower.session.kitchen
     }

@@ -262,17 +262,12 @@ fn frames_schema() -> Value {
 }
 
 fn log_schema() -> Value {
+    let levels = ["UNKNOWN", "DEBUG", "INFO", "WARNING", "ERROR", "FATAL"].into_iter().enumerate();
+    let levels: Vec<Value> = levels.map(|(level, title)| json!({ "title": title, "const": level })).collect();
     let level = json!({
         "title": "foxglove.LogLevel",
         "description": "2: information; 3, warning: an error of the participant, or something that went wrong",
-        "oneOf": [
-            { "title": "UNKNOWN", "const": 0 },
-            { "title": "DEBUG", "const": 1 },
-            { "title": "INFO", "const": 2 },
-            { "title": "WARNING", "const": 3 },
-            { "title": "ERROR", "const": 4 },
-            { "title": "FATAL", "const": 5 },
-        ],
+        "oneOf": levels,
     });
     let fields = json!({
         "timestamp": time_schema("Session time"),

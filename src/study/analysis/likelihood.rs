@@ -122,17 +122,3 @@ fn ratio(pairs: &[(f64, f64)]) -> f64 {
     let (gain, presses) = pairs.iter().fold((0.0, 0.0), |sum, pair| (sum.0 + pair.0, sum.1 + pair.1));
     gain / presses
 }
-
-#[cfg(test)]
-mod tests {
-    use super::least;
-
-    #[test]
-    fn the_bottom_of_a_bent_valley_is_found_and_a_slope_without_an_end_is_left() {
-        let bent = |at: &[f64]| (at[0] - 1.3).cosh() + (at[1] - at[0].powi(2) / 4.0 + 2.0).powi(2);
-        let found = least(bent, [3.0, 2.0]);
-        assert!((found[0] - 1.3).abs() < 1e-3 && (found[1] + 1.5775).abs() < 2e-3, "{found:?}");
-        let found = least(|at| (-at[0]).exp() + at[1].powi(2), [0.0, 1.0]);
-        assert!(found[0] > 10.0 && found[1].abs() < 1e-3, "{found:?}");
-    }
-}

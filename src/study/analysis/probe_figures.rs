@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use crate::analysis::probe_detection::{ProbeDetection, ProbeLogScores, WeightedProbeBelief};
 use crate::analysis::probe_record::{ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial, weighted_share};
+use crate::grouping::grouped;
 use crate::headline::directed;
 use crate::statistics::interval_where_known;
 use crate::why::{self, decimal, percent};
@@ -75,10 +76,13 @@ pub struct RecordedBeliefComparison {
 impl ProbeSummary {
     /// Trials with their participant's code; `None` if no question was shown.
     pub fn from_trials<'a>(trials: impl IntoIterator<Item = (&'a str, &'a ProbedTrial)>) -> Option<ProbeSummary> {
-        let participants = by_participant(trials);
+        let participants: Vec<Vec<&ProbedTrial>> = grouped(trials).into_iter().map(|(_, of_one)| of_one).collect();
         let counts = ProbeCounts::from_trials(participants.iter().flatten().copied());
         (counts.questions > 0).then_some(())?;
-        let beliefs: Vec<Vec<WeightedProbeBelief>> = participants.iter().map(|trials| beliefs(trials)).collect();
+        let of_one = |trials: &Vec<&'a ProbedTrial>| -> Vec<WeightedProbeBelief<'a>> {
+            trials.iter().flat_map(|trial| trial.counted()).filter_map(WeightedProbeBelief::by_answer).collect()
+        };
+        let beliefs: Vec<Vec<WeightedProbeBelief>> = participants.iter().map(of_one).collect();
         let known: Vec<&Vec<WeightedProbeBelief>> = beliefs.iter().filter(|of_one| !of_one.is_empty()).collect();
         let pooled = |of: &[&Vec<WeightedProbeBelief>]| -> ProbeDetection {
             ProbeDetection::from_beliefs(&of.iter().flat_map(|one| one.iter().copied()).collect::<Vec<_>>())
@@ -92,7 +96,7 @@ impl ProbeSummary {
             .collect();
         let level_2 = [ProbeQuestionKind::NextOrder, ProbeQuestionKind::NextPress].into_iter().map(|kind| {
             let is_it = |_: &ProbedTrial, one: &ProbedQuestion| one.kind == kind && one.origin == ProbeOrigin::Schedule;
-            accuracy(&participants, (ProbeAccuracyGrouping::Kind, kind.words()), SEED, is_it)
+            accuracy(&participants, (ProbeAccuracyGrouping::Kind, kind.words()), is_it)
         });
         let is_counted = |_: &ProbedTrial, one: &ProbedQuestion| one.is_counted();
         Some(ProbeSummary {
@@ -104,29 +108,13 @@ impl ProbeSummary {
             ece_interval: interval_where_known(&known, SEED, |of| pooled(of).ece),
             auc_unweighted: ProbeDetection::from_beliefs(&unweighted).auc,
             log_scores: ProbeLogScores::from_questions(&numbered),
-            accuracy: accuracy(&participants, (ProbeAccuracyGrouping::Kind, "all"), SEED, is_counted),
-            accuracies: accuracies(&participants, SEED),
-            assistance: awareness_effect(&participants, SEED),
+            accuracy: accuracy(&participants, (ProbeAccuracyGrouping::Kind, "all"), is_counted),
+            accuracies: accuracies(&participants),
+            assistance: awareness_effect(&participants),
             level_2: level_2.filter(|one| one.n > 0).collect(),
             by_true_beliefs: RecordedBeliefComparison::from_beliefs(&all),
         })
     }
-}
-
-/// The trials of each participant; the participants are in the order of their first trial.
-fn by_participant<'a>(trials: impl IntoIterator<Item = (&'a str, &'a ProbedTrial)>) -> Vec<Vec<&'a ProbedTrial>> {
-    let mut participants: Vec<(&str, Vec<&ProbedTrial>)> = Vec::new();
-    for (code, trial) in trials {
-        match participants.iter_mut().find(|(other, _)| *other == code) {
-            Some((_, of_one)) => of_one.push(trial),
-            None => participants.push((code, vec![trial])),
-        }
-    }
-    participants.into_iter().map(|(_, of_one)| of_one).collect()
-}
-
-fn beliefs<'a>(trials: &[&'a ProbedTrial]) -> Vec<WeightedProbeBelief<'a>> {
-    trials.iter().flat_map(|trial| trial.counted()).filter_map(WeightedProbeBelief::by_answer).collect()
 }
 
 impl ProbeCounts {
@@ -253,7 +241,7 @@ fn groups(trial: &ProbedTrial, question: &ProbedQuestion) -> Vec<(ProbeAccuracyG
 }
 
 /// Over the questions of the main results; `participants`: the trials of each.
-fn accuracies(participants: &[Vec<&ProbedTrial>], seed: u64) -> Vec<ProbeAnswerAccuracy> {
+fn accuracies(participants: &[Vec<&ProbedTrial>]) -> Vec<ProbeAnswerAccuracy> {
     let mut all: Vec<(ProbeAccuracyGrouping, usize, String)> = participants
         .iter()
         .flatten()
@@ -266,7 +254,7 @@ fn accuracies(participants: &[Vec<&ProbedTrial>], seed: u64) -> Vec<ProbeAnswerA
             let is_in = |trial: &ProbedTrial, question: &ProbedQuestion| {
                 question.is_counted() && groups(trial, question).contains(&key)
             };
-            accuracy(participants, (key.0, &key.2), seed, is_in)
+            accuracy(participants, (key.0, &key.2), is_in)
         })
         .collect()
 }
@@ -274,7 +262,6 @@ fn accuracies(participants: &[Vec<&ProbedTrial>], seed: u64) -> Vec<ProbeAnswerA
 fn accuracy(
     participants: &[Vec<&ProbedTrial>],
     (by, group): (ProbeAccuracyGrouping, &str),
-    seed: u64,
     is_in: impl Fn(&ProbedTrial, &ProbedQuestion) -> bool,
 ) -> ProbeAnswerAccuracy {
     let of_one = |trials: &Vec<&ProbedTrial>| -> Vec<(f64, bool)> {
@@ -303,12 +290,12 @@ fn accuracy(
         n: questions().filter(|one| one.is_wrong().is_some()).count() as u64,
         unsure: questions().filter(|one| one.response == ProbeResponse::Unsure).count() as u64,
         accuracy: weighted_share(answers.into_iter().flatten()),
-        interval: interval_where_known(&sums, seed, share),
+        interval: interval_where_known(&sums, SEED, share),
     }
 }
 
 /// Within participants; `None` if none has answers in both assisted and unassisted trials.
-fn awareness_effect(participants: &[Vec<&ProbedTrial>], seed: u64) -> Option<SituationAwarenessEffect> {
+fn awareness_effect(participants: &[Vec<&ProbedTrial>]) -> Option<SituationAwarenessEffect> {
     let share = |trials: &[&ProbedTrial], assisted: bool| {
         let of = trials.iter().filter(|trial| (trial.planned_arm != StudyArm::None) == assisted);
         let answers = of.flat_map(|trial| trial.counted());
@@ -320,7 +307,7 @@ fn awareness_effect(participants: &[Vec<&ProbedTrial>], seed: u64) -> Option<Sit
     Some(SituationAwarenessEffect {
         participants: differences.len() as u64,
         difference: mean(&differences)?,
-        interval: interval_where_known(&differences, seed, mean),
+        interval: interval_where_known(&differences, SEED, mean),
     })
 }
 

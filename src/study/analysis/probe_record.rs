@@ -9,14 +9,14 @@ use crate::analysis::seen_contents::LastSeenContents;
 use tomcom_core::base::maths::regularized_incomplete_beta;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{
-    Agent, AspectId, AspectKind, ButtonAction, Kitchen, KitchenChange, LocationKind, OrderContent, Press,
+    Agent, AspectId, AspectKind, ButtonAction, Kitchen, KitchenChange, LocationId, LocationKind, OrderContent, Press,
 };
 use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::mind::RecordedBelief;
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::probes::{ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
 use tomcom_session::study_arm::StudyArm;
-use tomcom_session::{Event, Session, TimestampedEvent};
+use tomcom_session::{Event, Session, TimestampedEvent, probe_sampling};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, strum::IntoStaticStr)]
 #[strum(serialize_all = "snake_case")]
@@ -278,10 +278,10 @@ impl ProbeCollector {
 
     fn frozen(&self, now: SessionTime, question: &ProbeQuestion, follower: &SessionFollower) -> ProbedQuestion {
         let (session, kitchen) = (&follower.session, &follower.session.kitchen);
-        let (kind, aspect) = subject(kitchen, &question.about);
+        let (kind, aspect) = (kind_of(kitchen, &question.about), probe_sampling::aspect(kitchen, &question.about));
         let truth = aspect.map(|aspect| {
-            let truth = label(kitchen, aspect, kitchen.true_value(session.state, aspect));
-            question.choice_for(&truth).to_string()
+            let truth = kitchen.true_value(session.state, aspect);
+            question.choice_for(&kitchen.aspects[aspect.index()].labels[truth]).to_string()
         });
         ProbedQuestion {
             probe: 0,
@@ -376,23 +376,15 @@ impl ProbeCollector {
     }
 }
 
-fn subject(kitchen: &Kitchen, about: &ProbeSubject) -> (ProbeQuestionKind, Option<AspectId>) {
+fn kind_of(kitchen: &Kitchen, about: &ProbeSubject) -> ProbeQuestionKind {
+    let is_order = |id: LocationId| kitchen.location(id).kind == LocationKind::Order;
     match about {
-        ProbeSubject::Location { location } => {
-            let id = kitchen.location_named(location);
-            let is_order = id.is_some_and(|id| kitchen.location(id).kind == LocationKind::Order);
-            (if is_order { ProbeQuestionKind::Order } else { ProbeQuestionKind::Place }, id.map(AspectId::of_location))
+        ProbeSubject::Location { location } if kitchen.location_named(location).is_some_and(is_order) => {
+            ProbeQuestionKind::Order
         }
-        ProbeSubject::Recipe { dish } => {
-            let is_it = |kind: AspectKind| matches!(kind, AspectKind::Recipe(id) if kitchen.dish(id).name == *dish);
-            let index = kitchen.aspects.iter().position(|aspect| is_it(aspect.kind));
-            (ProbeQuestionKind::Recipe, index.map(|index| AspectId(index as u8)))
-        }
-        ProbeSubject::NextOrder => (ProbeQuestionKind::NextOrder, None),
-        ProbeSubject::NextPress => (ProbeQuestionKind::NextPress, None),
+        ProbeSubject::Location { .. } => ProbeQuestionKind::Place,
+        ProbeSubject::Recipe { .. } => ProbeQuestionKind::Recipe,
+        ProbeSubject::NextOrder => ProbeQuestionKind::NextOrder,
+        ProbeSubject::NextPress => ProbeQuestionKind::NextPress,
     }
-}
-
-fn label(kitchen: &Kitchen, aspect: AspectId, value: usize) -> String {
-    kitchen.aspects[aspect.index()].labels[value].clone()
 }

@@ -51,6 +51,15 @@ impl BidsTree {
         };
         write().map_err(|reason| FileError::not_written(&path, reason, REMEDY))
     }
+
+    /// `name`: path below the root folder. Errors: no file can be written to the data set's folder.
+    pub fn begin(&self, name: &str, heading: String) -> FileResult<LongTableFile> {
+        let file =
+            tempfile::tempfile_in(&self.root).map_err(|reason| FileError::not_written(&self.root, reason, REMEDY))?;
+        let (path, rows) = (self.root.join(name), BufWriter::new(file));
+        let (newest, facts) = (SessionTime::ZERO, LongTableFacts::default());
+        Ok(LongTableFile { path, heading, rows, newest, late: Vec::new(), facts })
+    }
 }
 
 /// A long table of a data set that is being written row by row. Rows that come in the order of their times go to a
@@ -64,17 +73,6 @@ pub struct LongTableFile {
     newest: SessionTime,
     late: Vec<(SessionTime, String)>,
     facts: LongTableFacts,
-}
-
-impl BidsTree {
-    /// `name`: path below the root folder. Errors: no file can be written to the data set's folder.
-    pub fn begin(&self, name: &str, heading: String) -> FileResult<LongTableFile> {
-        let file =
-            tempfile::tempfile_in(&self.root).map_err(|reason| FileError::not_written(&self.root, reason, REMEDY))?;
-        let (path, rows) = (self.root.join(name), BufWriter::new(file));
-        let (newest, facts) = (SessionTime::ZERO, LongTableFacts::default());
-        Ok(LongTableFile { path, heading, rows, newest, late: Vec::new(), facts })
-    }
 }
 
 impl LongTableFile {

@@ -6,14 +6,12 @@ use std::path::{Path, PathBuf};
 use crate::files::recordings;
 use crate::frozen_plan::{PlaceInPlan, RecordedPlan};
 use tomcom_session::files::file_error::{FileResult, read_text};
+use tomcom_session::files::near_path::SESSIONS;
 use tomcom_session::files::parse::parse;
 use tomcom_session::header::CodeCorrection;
 use tomcom_session::log::LogReader;
 use tomcom_session::plan::PlanSpec;
 use tomcom_session::{LogHeader, SessionSpec, person_code};
-
-/// Folder in which a lab keeps its session files.
-const SESSIONS: &str = "sessions";
 
 /// What is wrong about the plan of a recording whose code was just corrected, by its session file, if one is there, and
 /// the recordings beside; empty for a recording of no plan.

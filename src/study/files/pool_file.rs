@@ -1,7 +1,8 @@
 //! Files of pools (simulated participants for power analyses) in the format JSON Lines, of the table of power, and of
 //! frozen plans.
 
-use std::io::{self, ErrorKind};
+use std::fs::File;
+use std::io::{self, ErrorKind, Read};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -144,6 +145,12 @@ pub fn freeze(path: &Path, frozen: &FrozenPlan) -> FileResult<String> {
         _ => FileError::not_written(path, reason, "a new file in a folder that can be written to"),
     })?;
     Ok(digest)
+}
+
+/// Whether a file begins as a frozen plan does. Errors: it cannot be opened.
+pub fn is_frozen(path: &Path) -> io::Result<bool> {
+    let mut head = [0; HEAD.len()];
+    Ok(File::open(path)?.read_exact(&mut head).is_ok() && head == *HEAD.as_bytes())
 }
 
 /// With its digest. Errors: it cannot be read, is no frozen plan, or was changed after it was frozen.

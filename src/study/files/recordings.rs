@@ -17,6 +17,7 @@ use tomcom_session::log::{
 use tomcom_session::plan::{PhaseSpec, PhaseStand, PlanPosition, PlanRecording, RecordingOutcome};
 use tomcom_session::probes::ProbeEvent;
 use tomcom_session::protocol::{PhaseProgress, ProtocolEvent, StudyPhase};
+use tomcom_session::settings::ParticipantKind;
 use tomcom_session::tutorial::TutorialEvent;
 use tomcom_session::{Event, TimestampedEvent};
 
@@ -138,6 +139,7 @@ struct PartHeaderGlance {
 struct Part {
     code: String,
     recorded_as: Option<String>,
+    kind: ParticipantKind,
     step: PlanPosition,
     continues: Option<String>,
     running: bool,
@@ -254,6 +256,7 @@ impl Part {
         let mut part = Part {
             code: header.session.participant.code,
             recorded_as: header.correction.map(|correction| correction.before),
+            kind: header.session.participant.kind,
             step,
             continues: header.continues.map(|before| before.recording),
             running: path.parent().is_some_and(|folder| RecordingLock::holder(folder).is_some()),
@@ -309,6 +312,7 @@ impl Part {
             recording: name.to_string(),
             code: self.code.clone(),
             recorded_as: self.recorded_as.clone(),
+            kind: self.kind,
             step: self.step.clone(),
             consent: any(|part| part.consent),
             instructed: any(|part| part.instructed),

@@ -120,7 +120,8 @@ pub fn each_trial(
 }
 
 fn wait_for_any(simulation: &SimulationRequest, trials: &[u64]) {
-    let folders: Vec<PathBuf> = trials.iter().map(|&trial| folder_of(simulation, trial)).collect();
+    let folder = |&trial: &u64| folder_of_trial(&simulation.out, &header_of_trial(simulation, trial).session);
+    let folders: Vec<PathBuf> = trials.iter().map(folder).collect();
     while folders.iter().all(|folder| RecordingLock::holder(folder).is_some()) {
         std::thread::sleep(LOOK);
     }
@@ -144,10 +145,6 @@ fn header_of_trial(simulation: &SimulationRequest, trial: u64) -> LogHeader {
         }
     };
     LogHeader::new(spec, trial, files.layout.clone(), files.recipes.clone())
-}
-
-fn folder_of(simulation: &SimulationRequest, trial: u64) -> PathBuf {
-    folder_of_trial(&simulation.out, &header_of_trial(simulation, trial).session)
 }
 
 /// Simulates a trial, or reads its complete recording. `kept`: the cost to go of this thread's last trial.

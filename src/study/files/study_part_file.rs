@@ -32,7 +32,7 @@ impl PartWriter {
         let unwritable = |reason| FileError::unwritable(path, reason);
         let is_own = |head: &[u8]| {
             let there = serde_json::from_slice::<PartHeader>(overwrite::first_line(head));
-            there.is_ok_and(|there| there.is_place_of(header))
+            there.is_ok_and(|there| (there.shard, there.shards) == (header.shard, header.shards))
         };
         overwrite::check(path, "the same part", is_own).map_err(unwritable)?;
         let file = Replacement::begin(path).map_err(unwritable)?;

@@ -24,14 +24,15 @@ pub fn keep(recording: &Path, figures: &KeptFigures) -> FileResult<()> {
 
 /// Errors: there is a file at the path that this program did not write.
 pub fn check_table(path: &Path) -> FileResult<()> {
-    overwrite::check(path, "a table of a tournament", |head| overwrite::first_line(head) == csv_header().as_bytes())
+    let names = csv_header().join(",");
+    overwrite::check(path, "a table of a tournament", |head| overwrite::first_line(head) == names.as_bytes())
         .map_err(|reason| FileError::unwritable(path, reason))
 }
 
 pub fn write_table(path: &Path, found: &Tournament) -> FileResult<()> {
     let write = || -> io::Result<()> {
         let mut table = csv::Writer::from_writer(Vec::new());
-        table.write_record(csv_header().split(','))?;
+        table.write_record(csv_header())?;
         csv_rows(found).iter().try_for_each(|row| table.write_record(row))?;
         let bytes = table.into_inner().map_err(|error| io::Error::other(error.to_string()))?;
         overwrite::write(path, &bytes)

@@ -224,7 +224,7 @@ fn keep(
     if extent.events && analysed.trial.is_some() { export.keep(index, rows) } else { Ok(()) }
 }
 
-#[derive(Debug, Default)]
+#[derive(Default)]
 struct CollectedRecordings {
     trials: Vec<TrialStatistics>,
     /// Settings and circumstances of all trials together. Those of single trials would take most of the memory.
@@ -239,26 +239,22 @@ struct CollectedRecordings {
 
 impl CollectedRecordings {
     fn read(export: &AnalysisFolder, number: usize) -> Result<CollectedRecordings, AnalysisWriteError> {
-        let mut collected = CollectedRecordings::default();
+        let mut all = CollectedRecordings::default();
         for index in 0..number {
-            collected.add(index, export.kept_analysed(index)?);
+            let AnalysedRecording { recording, plan, correction, consent, tutorial, waived, trial, .. } =
+                export.kept_analysed(index)?;
+            all.plans.push(plan);
+            all.tutorials.extend(tutorial);
+            all.waived.extend(waived);
+            if let Some((trial, _, facts)) = trial {
+                all.kept.insert(trial.recording.clone(), index);
+                all.trials.push(trial);
+                all.facts.add(facts);
+            }
+            all.consents.extend(consent.map(|consent| (recording.clone(), consent)));
+            all.corrections.extend(correction.map(|correction| CorrectedRecording { recording, correction }));
         }
-        Ok(collected)
-    }
-
-    fn add(&mut self, index: usize, recording: AnalysedRecording) {
-        self.plans.push(recording.plan);
-        let name = recording.recording.clone();
-        self.corrections
-            .extend(recording.correction.map(|correction| CorrectedRecording { recording: name, correction }));
-        self.consents.extend(recording.consent.map(|consent| (recording.recording.clone(), consent)));
-        self.tutorials.extend(recording.tutorial);
-        self.waived.extend(recording.waived);
-        if let Some((trial, _, facts)) = recording.trial {
-            self.kept.insert(trial.recording.clone(), index);
-            self.trials.push(trial);
-            self.facts.add(facts);
-        }
+        Ok(all)
     }
 }
 
@@ -271,51 +267,45 @@ fn conclude(
     frozen: Option<((String, FrozenPlan), PlanVersions)>,
     (copies, foreign): (Vec<RecordingCopy>, Vec<ForeignRecording>),
 ) -> Result<(StudySummary, PathBuf), StudyError> {
-    let CollectedRecordings {
-        mut trials,
-        facts,
-        kept,
-        plans,
-        mut corrections,
-        mut consents,
-        mut tutorials,
-        mut waived,
-    } = CollectedRecordings::read(export, number)?;
-    arrange(&mut trials);
-    waived.sort();
-    let practice = (plans.len() - trials.len()) as u64;
+    let mut all = CollectedRecordings::read(export, number)?;
+    arrange(&mut all.trials);
+    let trials = &all.trials;
+    let practice = (all.plans.len() - trials.len()) as u64;
     if !trials.iter().any(TrialStatistics::counts) {
-        return Err(nothing_counts(analysis, practice, &trials, &foreign));
+        return Err(nothing_counts(analysis, practice, trials, &foreign));
     }
-    consents.sort_by(|(one, a), (other, b)| (&a.started, one).cmp(&(&b.started, other)));
-    let consents: Vec<RecordedConsent> = consents.into_iter().map(|(_, consent)| consent).collect();
-    corrections.sort_by(|a, b| a.recording.cmp(&b.recording));
+    all.waived.sort();
+    all.consents.sort_by(|(one, a), (other, b)| (&a.started, one).cmp(&(&b.started, other)));
+    let consents: Vec<RecordedConsent> = all.consents.into_iter().map(|(_, consent)| consent).collect();
+    all.corrections.sort_by(|a, b| a.recording.cmp(&b.recording));
     // The sort is stable, so the order of a tutorial's questions stays.
-    tutorials.sort_by(|a, b| (&a.participant, &a.recording).cmp(&(&b.participant, &b.recording)));
-    let (details, mut filled) = tables_of_details(&trials, &kept, export)?;
+    all.tutorials.sort_by(|a, b| (&a.participant, &a.recording).cmp(&(&b.participant, &b.recording)));
+    let (details, mut filled) = tables_of_details(trials, &all.kept, export)?;
     let is_ended = |trial: &&TrialStatistics| trial.counts() && trial.ended == Some(TrialEndReason::Wizard);
     let ended = trials.iter().filter(is_ended).count() as u64;
+    let check = |((digest, frozen), versions): ((String, FrozenPlan), PlanVersions)| {
+        PreregistrationCheck::new(digest, &frozen, &all.plans, &versions, ended)
+    };
     let figures = StudySummary {
-        preregistration: frozen
-            .map(|((digest, frozen), versions)| PreregistrationCheck::new(digest, &frozen, &plans, &versions, ended)),
-        missing_trials: missing_trials(&plans),
+        preregistration: frozen.map(check),
+        missing_trials: missing_trials(&all.plans),
         copies,
         foreign,
-        corrections,
-        waived,
-        tutorial: TutorialSummary::from_answers(&tutorials),
-        ..StudySummary::from_trials(&trials, details, &facts, practice)
+        corrections: all.corrections,
+        waived: all.waived,
+        tutorial: TutorialSummary::from_answers(&all.tutorials),
+        ..StudySummary::from_trials(trials, details, &all.facts, practice)
     };
-    let events: Vec<usize> = if extent.events { kept.into_values().collect() } else { Vec::new() };
+    let events: Vec<usize> = if extent.events { all.kept.into_values().collect() } else { Vec::new() };
     filled.extend(export.tables_of_events(&events)?);
-    let columns = ParticipantRow::columns_of(&trials);
-    filled.extend(export.table_of_columns(&columns, participants(&trials, &consents))?);
-    filled.extend(export.table::<TrialStatistics>(&trials)?);
+    let columns = ParticipantRow::columns_of(trials);
+    filled.extend(export.table_of_columns(&columns, participants(trials, &consents))?);
+    filled.extend(export.table::<TrialStatistics>(trials)?);
     filled.extend(export.table::<AnswerRow>(trials.iter().flat_map(answers))?);
-    filled.extend(export.table::<TutorialQuestionRow>(&tutorials)?);
-    filled.extend(export.table::<DataDictionaryRow>(dictionary(&trials))?);
+    filled.extend(export.table::<TutorialQuestionRow>(&all.tutorials)?);
+    filled.extend(export.table::<DataDictionaryRow>(dictionary(trials))?);
     filled.sort_unstable();
-    let path = export.report(&report::page(&figures, &trials, &facts, &filled))?;
+    let path = export.report(&report::page(&figures, trials, &all.facts, &filled))?;
     Ok((figures, path))
 }
 

@@ -27,7 +27,8 @@ use tomcom_session::{Event, Session, TimestampedEvent};
 #[derive(Debug)]
 pub struct RowCollector {
     recording: String,
-    rows: EventRows,
+    /// Of each table of events, in the order of [`CsvTable::OF_EVENTS`].
+    rows: [TableRows; 5],
     pressed_at: [Option<SessionTime>; 2],
     /// Presses of both agents so far; human presses are judged after the replay.
     presses: Vec<RecordedPress>,
@@ -35,15 +36,9 @@ pub struct RowCollector {
     look: Option<GazeRun>,
 }
 
-/// Rows of each table of events, in the order of [`CsvTable::OF_EVENTS`].
-#[derive(Debug)]
-struct EventRows([TableRows; 5]);
-
-impl EventRows {
-    fn add<Row: CsvRow>(&mut self, row: &Row) {
-        if let Some(index) = CsvTable::OF_EVENTS.iter().position(|&table| table == Row::TABLE) {
-            self.0[index].add(row);
-        }
+fn add<Row: CsvRow>(rows: &mut [TableRows; 5], row: &Row) {
+    if let Some(index) = CsvTable::OF_EVENTS.iter().position(|&table| table == Row::TABLE) {
+        rows[index].add(row);
     }
 }
 
@@ -84,7 +79,7 @@ impl RowCollector {
     pub fn new(recording: &str) -> RowCollector {
         RowCollector {
             recording: recording.to_string(),
-            rows: EventRows(CsvTable::OF_EVENTS.map(|_| TableRows::default())),
+            rows: Default::default(),
             pressed_at: [None; 2],
             presses: Vec::new(),
             witness: None,
@@ -109,16 +104,11 @@ impl RowCollector {
             Event::Gaze(sample) if was_running && session.gaze.fault.is_none() => {
                 let sample = session.corrected(*sample);
                 let taken = sample.taken(stamped.time);
-                let point = [sample.x, sample.y];
-                let inside = sample.confidence >= MIN_CONFIDENCE;
-                let nearest =
-                    nearest_location(&session.kitchen, point).filter(|(_, distance)| inside && *distance == 0.0);
-                self.looked(
-                    nearest.map(|(location, _)| location),
-                    taken,
-                    [sample.x, sample.y, sample.confidence],
-                    session,
-                );
+                let is_sure = sample.confidence >= MIN_CONFIDENCE;
+                let nearest = nearest_location(&session.kitchen, [sample.x, sample.y]);
+                let inside = nearest.filter(|(_, distance)| is_sure && *distance == 0.0);
+                let location = inside.map(|(location, _)| location);
+                self.looked(location, taken, [sample.x, sample.y, sample.confidence], session);
             }
             _ => {}
         }
@@ -154,13 +144,9 @@ impl RowCollector {
         let kitchen = &session.kitchen;
         for (index, aspect) in estimate.aspects.iter().enumerate() {
             let truth = kitchen.true_value(state, AspectId(index as u8));
-            self.rows.add(&BeliefRow {
-                recording: &self.recording,
-                seq,
-                truth: &kitchen.aspects[index].labels[truth],
-                estimate: aspect,
-                believed: witness.as_ref().and_then(|witness| witness.aspects.get(index)),
-            });
+            let (recording, truth) = (&*self.recording, &*kitchen.aspects[index].labels[truth]);
+            let believed = witness.as_ref().and_then(|witness| witness.aspects.get(index));
+            add(&mut self.rows, &BeliefRow { recording, seq, truth, estimate: aspect, believed });
         }
     }
 
@@ -181,7 +167,7 @@ impl RowCollector {
     fn end_look(&mut self, session: &Session) {
         let Some(run) = self.look.take() else { return };
         let time_s = session.trial_clock_at(run.began).as_secs_f64();
-        self.rows.add(&GazeRow { recording: &self.recording, kitchen: &session.kitchen, time_s, run });
+        add(&mut self.rows, &GazeRow { recording: &self.recording, kitchen: &session.kitchen, time_s, run });
     }
 
     /// In the order of [`CsvTable::OF_EVENTS`]. `lanes`: by sender, sent and hypothetical communications.
@@ -195,7 +181,8 @@ impl RowCollector {
         self.end_look(session);
         let (recording, kitchen) = (&*self.recording, &*session.kitchen);
         for recorded in &self.presses {
-            self.rows.add(&ActionRow { recording, kitchen, recorded, analysis: known.analysis(recorded.seq, session) });
+            let analysis = known.analysis(recorded.seq, session);
+            add(&mut self.rows, &ActionRow { recording, kitchen, recorded, analysis });
         }
         let pairs = match lanes {
             [(_, of), (_, with)] => Some(matched(of, with, window, MatchCriterion::Signal)),
@@ -209,13 +196,13 @@ impl RowCollector {
                 // The first lane has the communications that were really sent, which can have used an offer.
                 let took = |timed: &&TimedOffer| side == 0 && timed.sent == Some(sent.clock);
                 let offer = offers.iter().find(took).map(|timed| timed.offer.seq);
-                self.rows.add(&CommunicationRow { recording, kitchen, lane, sent, offer, matched });
+                add(&mut self.rows, &CommunicationRow { recording, kitchen, lane, sent, offer, matched });
             }
         }
         for timed in &offers {
-            self.rows.add(&OfferRow { recording, timed });
+            add(&mut self.rows, &OfferRow { recording, timed });
         }
-        self.rows.0.map(TableRows::into_bytes)
+        self.rows.map(TableRows::into_bytes)
     }
 }
 
@@ -237,27 +224,30 @@ impl CodedErrors {
     pub fn read(log: &LogReader, follower: &SessionFollower, named: Option<&[String; 2]>) -> FileResult<CodedErrors> {
         let codable = CodableErrors::from_presses(&follower.session.kitchen, &follower.judged);
         let all = rater_codes::read_all(log.folder(), &codable)?;
-        let own_codes = || -> FileResult<Option<RaterPair>> {
+        // Without a consensus; `stale`: why one does not hold.
+        let own_codes = |stale: Option<String>| {
             let choice = named.map_or_else(
                 || RaterChoice::most_complete(&all),
                 |raters| RaterChoice::Pair(RaterPair::named(&all, raters)),
             );
-            match choice {
-                RaterChoice::Pair(pair) => Ok(Some(pair)),
-                RaterChoice::Tied { raters, coded } if is_needed(follower, &codable, coded) => Err(tied(log, &raters)),
-                RaterChoice::TooFew | RaterChoice::Tied { .. } => Ok(None),
-            }
+            let raters = match choice {
+                RaterChoice::Pair(pair) => Some(pair),
+                RaterChoice::Tied { raters, coded } if is_needed(follower, &codable, coded) => {
+                    return Err(tied(log, &raters));
+                }
+                RaterChoice::TooFew | RaterChoice::Tied { .. } => None,
+            };
+            Ok(CodedErrors { raters, stale, ..CodedErrors::default() })
         };
         let consensus = consensus_file::read(log.folder(), &codable)?;
         let is_asked = |raters: &[String; 2]| named.is_none_or(|named| named.iter().all(|one| raters.contains(one)));
         let Some(consensus) = consensus.filter(|consensus| is_asked(&consensus.raters)) else {
-            return Ok(CodedErrors { raters: own_codes()?, ..CodedErrors::default() });
+            return own_codes(None);
         };
         let pair = RaterPair::named(&all, &consensus.raters);
         let own = &pair.codes;
         if let Some(rater) = consensus.without_codes(own.each_ref()) {
-            let stale = format!("there are no codes of {rater}");
-            return Ok(CodedErrors { raters: own_codes()?, stale: Some(stale), ..CodedErrors::default() });
+            return own_codes(Some(format!("there are no codes of {rater}")));
         }
         if let Some(changed) = consensus.changed(own.each_ref()).first() {
             let error = codable.errors.partition_point(|&press| press < changed.press) + 1;
@@ -266,18 +256,14 @@ impl CodedErrors {
                 "{} changed the code of error {error} (press {}) after {one} and {other} had settled it",
                 changed.rater, changed.press
             );
-            return Ok(CodedErrors { raters: own_codes()?, stale: Some(stale), ..CodedErrors::default() });
+            return own_codes(Some(stale));
         }
         let shared = consensus.current(own.each_ref());
-        match codable.errors.iter().all(|press| shared.0.contains_key(press)) {
-            true => Ok(CodedErrors {
-                raters: Some(pair),
-                consensus: Some(shared),
-                settled_by: Some(consensus.raters),
-                stale: None,
-            }),
-            false => Ok(CodedErrors { raters: own_codes()?, ..CodedErrors::default() }),
+        if !codable.errors.iter().all(|press| shared.0.contains_key(press)) {
+            return own_codes(None);
         }
+        let settled_by = Some(consensus.raters);
+        Ok(CodedErrors { raters: Some(pair), consensus: Some(shared), settled_by, stale: None })
     }
 
     /// Human presses with the causes of errors, and the source of the causes: recorded beliefs for simulated

@@ -21,7 +21,6 @@ use crate::planned_trial::{ForeignRecording, PlannedTrialKey, RecordingCopy, dif
 use crate::study_part::{
     AnalysedRecording, PART_FORMAT, PartAnalysisOptions, PartHeader, PartShared, check_parts, trial_index,
 };
-use tomcom_session::LogHeader;
 use tomcom_session::files::compile_kitchen;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::headless::SimulationShard;
@@ -31,19 +30,6 @@ use tomcom_session::settings::ParticipantKind;
 
 /// Number of recordings that are analysed before their results are written, which bounds memory.
 const BLOCK: usize = 32;
-
-struct RecordingPlace {
-    is_own: bool,
-    header: LogHeader,
-}
-
-impl RecordingPlace {
-    fn read(recording: &Path, shard: SimulationShard) -> FileResult<RecordingPlace> {
-        let header = LogReader::open(recording)?.header;
-        let is_own = trial_index(header.session.step.as_ref(), header.trial) % shard.of == shard.number - 1;
-        Ok(RecordingPlace { is_own, header })
-    }
-}
 
 /// Analyses a shard of these recordings and writes the result to the file `analysis.out`. `begun` is called with the
 /// number of the shard's recordings, which is also returned, and `done` after each recording. Errors: a recording
@@ -55,7 +41,8 @@ pub fn analyse_shard(
     begun: impl FnOnce(usize),
     done: impl Fn() + Sync,
 ) -> Result<u64, StudyError> {
-    let places = parallel::each(&recordings.found, |(path, _)| RecordingPlace::read(path, shard), || ());
+    let header = |(path, _): &(PathBuf, String)| LogReader::open(path).map(|log| log.header);
+    let headers = parallel::each(&recordings.found, header, || ());
     // Named raters are checked when the parts are joined: a part alone may be without codes of one.
     let raters = match &analysis.raters {
         Some(named) => Some(named.clone()),
@@ -63,11 +50,11 @@ pub fn analyse_shard(
     };
     let (mut own, mut plans, mut left_out) = (Vec::new(), BTreeSet::new(), BTreeSet::new());
     let mut versions = PlanVersions::default();
-    for (recording, place) in recordings.found.into_iter().zip(places) {
-        let place = place?;
-        if place.is_own {
-            plans.extend(RecordedPlan::from_header(&place.header).plan);
-            versions.add(&recording.1, &place.header);
+    for (recording, header) in recordings.found.into_iter().zip(headers) {
+        let header = header?;
+        if trial_index(header.session.step.as_ref(), header.trial) % shard.of == shard.number - 1 {
+            plans.extend(RecordedPlan::from_header(&header).plan);
+            versions.add(&recording.1, &header);
             own.push(recording);
         } else {
             left_out.insert(recording.1);

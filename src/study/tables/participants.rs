@@ -55,7 +55,7 @@ impl<'a> ParticipantRow<'a> {
             "participant", "", "participant code; prefixed by the seed if several seeds are analysed together"
                 => &row.0[0].participant;
             "kind", "", "kind of participant: simulated, keyboard (at the console) or display (at the wall display)"
-                => row.0[0].kind_name();
+                => row.0[0].kind.name();
             "group", "", "starting group in the study plan, with a letter for each trial; A: the plan's first condition; empty: no plan"
                 => row.0[0].group.as_ref();
             "trials", "trials", "number of recorded trials" => row.0.len() as u64;

@@ -79,7 +79,7 @@ impl CsvRow for TrialStatistics {
         let mut columns = columns! { |t: Self|
             "recording", "", "folder of the recording; key of all tables by recording" => &t.recording;
             "participant", "", "as in participants" => &t.participant;
-            "kind", "", "as in participants" => t.kind_name();
+            "kind", "", "as in participants" => t.kind.name();
             "seed", "", "seed of the session, of which the random streams of each trial follow; BIDS has that of the trial" => t.seed;
             "group", "", "as in participants; empty: no plan" => t.group.as_ref();
             "period", "", "number of the trial in the participant's series; 1: the first; empty: no plan" => t.period;

@@ -183,12 +183,8 @@ fn anything(kitchen: &Kitchen, random: &mut impl RngExt) -> Event {
 #[test]
 fn its_recordings_verify_without_an_arm() {
     for seed in 1..4 {
-        let files = setup(seed);
-        let kitchen = Arc::new(files.kitchen.kitchen.clone());
-        let header = LogHeader::new(files.spec.clone(), 0, files.kitchen.layout.clone(), files.kitchen.recipes.clone());
-        let out = empty_folder(format!("arm/real-{seed}"));
-        let mut log = LogWriter::create_live(&out, "2026-03-14", &header).expect("the folder can be written");
-        let mut engine = engine_of(files, 0);
+        let (mut log, mut engine) = live_recording(setup(seed), 0, &empty_folder(format!("arm/real-{seed}")));
+        let kitchen = engine.session().kitchen.clone();
         let mut random = stream(seed, "real arm", 0);
         let mut inputs = vec![Event::TrialStarted, stage(ArmStage::Ready)];
         inputs.extend((0..1500).map(|_| anything(&kitchen, &mut random)));

@@ -2,15 +2,12 @@
 
 use crossterm::event::KeyCode;
 use ratatui::layout::Rect;
-use tomcom::console::console_model::Dialog;
-use tomcom::console::console_model::{Playback, ReplayAction};
-use tomcom::console::kitchen_map::KitchenMap;
-use tomcom::console::kitchen_map::KitchenMapElement;
-use tomcom::console::lists::Picker;
-use tomcom::console::lists::{PickerKind, ReasonFor};
+use tomcom::console::console_model::{Dialog, Playback, ReplayAction};
+use tomcom::console::kitchen_map::{KitchenMap, KitchenMapElement};
+use tomcom::console::lists::{Picker, PickerKind, ReasonFor};
 use tomcom::console::view::click_targets;
 use tomcom::console::view::regions::PanelAreas;
-use tomcom::console::{ConsoleCommand, ConsoleMessage, KeyBindings, KeyFileBindings, mouse, update};
+use tomcom::console::{ConsoleCommand, ConsoleMessage, mouse, update};
 use tomcom_core::communication::offer::OfferedAdvice;
 use tomcom_session::replay::ReplayLandmark;
 
@@ -190,10 +187,7 @@ fn nothing_below_a_dialog_can_be_clicked() {
 #[test]
 fn the_scrub_bar_and_the_timeline_seek_in_a_replay() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    stage.model.keys =
-        KeyBindings::replay(&stage.session.kitchen, &KeyFileBindings::default()).expect("the keys are free");
-    let length = at(40.0);
-    stage.model.playback = Some(Playback { length, event: 10, events: 90, ..Playback::new("S001".to_string()) });
+    stage.replays(Playback { trial_length: at(40.0), event: 10, events: 90, ..Playback::new("S001".to_string()) });
     for size in SIZES {
         stage.model.size = size;
         let rows = size.1;
@@ -202,7 +196,7 @@ fn the_scrub_bar_and_the_timeline_seek_in_a_replay() {
             &stage.session,
             ConsoleMessage::Click(column, row),
         ) {
-            Some(ConsoleCommand::Move(ReplayAction::ToTime(time))) => time.as_secs_f64(),
+            Some(ConsoleCommand::Move(ReplayAction::ToTime(time) | ReplayAction::ToClock(time))) => time.as_secs_f64(),
             other => panic!("{other:?} at {column}, {row} of {size:?}"),
         };
         // Above the line of keys, and two or three lines of messages.
@@ -223,17 +217,16 @@ fn the_scrub_bar_and_the_timeline_seek_in_a_replay() {
 #[test]
 fn the_scrub_bar_marks_errors_signals_and_false_beliefs_with_their_keys() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    stage.model.keys =
-        KeyBindings::replay(&stage.session.kitchen, &KeyFileBindings::default()).expect("the keys are free");
-    let marks = [(10.0, ReplayLandmark::Signal), (20.0, ReplayLandmark::FalseBelief), (30.0, ReplayLandmark::Error)];
+    let marks = [(10.0, ReplayLandmark::Signal), (21.0, ReplayLandmark::FalseBelief), (30.0, ReplayLandmark::Error)];
     let marks = marks.map(|(seconds, what)| (at(seconds), what)).into();
-    stage.model.playback = Some(Playback { length: at(40.0), marks, ..Playback::new("S001".to_string()) });
+    stage.replays(Playback { trial_length: at(40.0), marks, ..Playback::new("S001".to_string()) });
     for size in SIZES {
         stage.model.size = size;
         let screen = stage.screen(size);
         let bar = screen.lines().find(|line| line.contains(" recording ")).expect("the bar");
         let bar = bar.split_once(" recording ").map_or("", |(_, bar)| bar);
-        let places = ["s", "b", "e"].map(|key| bar.find(key).expect("a mark"));
+        // By the trial's clock, which shows 0:19.
+        let places = ["s", "●", "b", "e"].map(|sign| bar.find(sign).expect("a mark"));
         assert!(places.is_sorted(), "{bar}");
     }
 }
@@ -355,7 +348,6 @@ fn a_paste_filters_a_list_and_chooses_nothing() {
     assert_eq!(stage.paste(Some("stop the robot\n")), None);
     let Some(Dialog::Palette(cursor)) = &stage.model.dialog else { panic!("{:?}", stage.model.dialog) };
     assert_eq!(cursor.filter, "stop the robot");
-    assert_eq!(stage.key(KeyCode::Esc), None);
     assert_eq!(stage.key(KeyCode::Esc), None);
     stage.wait(1.0);
     assert_eq!(stage.control('x'), Some(ConsoleCommand::Input(Event::TrialPaused)));

@@ -1,12 +1,10 @@
 //! Keys: what they send, how often, which are hinted at, whose they are, and what they do to kitchen and robot.
 
 use crossterm::event::{KeyCode, KeyEventKind};
-use tomcom::console::console_model::Dialog;
-use tomcom::console::console_model::Playback;
+use tomcom::console::ConsoleCommand;
+use tomcom::console::console_model::{Dialog, Playback};
 use tomcom::console::key_action::KeyLayer;
-use tomcom::console::lists::Picker;
-use tomcom::console::lists::PickerKind;
-use tomcom::console::{ConsoleCommand, KeyBindings, KeyFileBindings};
+use tomcom::console::lists::{Picker, PickerKind};
 use tomcom_core::measures::wizard_performance::{FalseBeliefPeriod, WizardMeasures, WizardSignal};
 use tomcom_session::event::WizardScreenContent;
 
@@ -191,10 +189,8 @@ fn over_a_dialog_only_what_passes_it_is_shown() {
 fn a_replay_shows_no_way_beyond_its_ends() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.model.size = (200, 60);
-    stage.model.keys =
-        KeyBindings::replay(&stage.session.kitchen, &KeyFileBindings::default()).expect("the keys are free");
     let replay = |event, speed| Playback { event, events: 90, speed, ..Playback::new("S001".to_string()) };
-    stage.model.playback = Some(replay(10, 2));
+    stage.replays(replay(10, 2));
     check(&stage, &[". play", "left/right step", "pgup/pgdn 10 s", "+/- speed"], &["pause", "STOP ROBOT"]);
     stage.model.playback = Some(Playback { playing: true, ..replay(0, 0) });
     check(&stage, &[". pause", "  right step", "  pgdn 10 s", "  + speed"], &["left", "pgup"]);
@@ -271,8 +267,7 @@ fn the_card_counts_signals_in_the_words_of_the_study() {
     stage.model.wizard = WizardMeasures::from_signals(&[sent(6.0, 0), sent(7.0, 1)], Some(&[period]));
     for words in stage.model.wizard.words().expect("known beliefs") {
         for size in SIZES {
-            let screen = stage.screen(size);
-            assert!(screen.contains(&words), "{words}:\n{screen}");
+            stage.shows(size, &[&words]);
         }
     }
 }

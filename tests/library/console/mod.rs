@@ -13,8 +13,7 @@ mod trial;
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
-use tomcom::console::console_model::Playback;
-use tomcom::console::console_model::RecordingStatus;
+use tomcom::console::console_model::{Playback, RecordingStatus};
 use tomcom::console::panels::screen;
 use tomcom::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, KeyFileBindings, update, view};
 use tomcom_core::mind::dirichlet::{Dirichlet, DirichletBelief};
@@ -106,14 +105,8 @@ impl Stage {
         stage.press(9.2, Agent::Human, "cook");
         stage.press(10.3, Agent::Robot, "cut");
         stage.press(11.4, Agent::Human, "take nori");
-        stage.at(
-            12.0,
-            Event::SignalShown {
-                by: Sender::Wizard,
-                signal: Signal::Highlight("cutting_board".to_string()),
-                offer: None,
-            },
-        );
+        let shown = |signal| Event::SignalShown { by: Sender::Wizard, signal, offer: None };
+        stage.at(12.0, shown(Signal::Highlight("cutting_board".to_string())));
         stage.press(13.2, Agent::Human, "assembly_board");
         stage.at(13.5, Event::SignalEnded { reason: SignalEndReason::TakenBack });
         stage.estimate(&[("recipe of tuna nigiri", "salmon nigiri", 0.61), ("assembly_board", "nori", 0.98)], false);
@@ -138,10 +131,7 @@ impl Stage {
             stage.look(21.3 + 0.01 * f64::from(step), 0.36 + 0.004 * f64::from(step), 0.35);
         }
         stage.estimate(&[("assembly_board", "rice cooked + nori", 0.96)], true);
-        stage.at(
-            21.8,
-            Event::SignalShown { by: Sender::Wizard, signal: Signal::ShowRecipe("order_1".to_string()), offer: None },
-        );
+        stage.at(21.8, shown(Signal::ShowRecipe("order_1".to_string())));
         let before = stage.session.state;
         let error = |seconds, press: &str, why: &str| ExplainedError {
             time: at(seconds),

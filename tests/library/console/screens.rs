@@ -5,15 +5,12 @@ use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use ratatui::buffer::Cell;
 use ratatui::style::{Color, Modifier};
-use tomcom::console::console_model::NoticeLevel;
-use tomcom::console::console_model::Playback;
-use tomcom::console::console_model::{Dialog, RecordingStatus};
+use tomcom::console::console_model::{Dialog, NoticeLevel, Playback, RecordingStatus};
 use tomcom::console::key_action::KeyLayer;
-use tomcom::console::panels::Panel;
-use tomcom::console::panels::screen;
+use tomcom::console::panels::{Panel, screen};
 use tomcom::console::text_columns::squeeze;
 use tomcom::console::view::theme::{TerminalBackground, TextRole, Theme};
-use tomcom::console::{ConsoleMessage, KeyBindings, KeyFileBindings, update, view};
+use tomcom::console::{ConsoleMessage, update, view};
 use tomcom_core::robot::{AbortReason, IdleReason, SafetyMode};
 use tomcom_session::replay::ReplayLandmark;
 
@@ -48,11 +45,7 @@ fn text_that_is_cut_ends_with_an_ellipsis() {
 #[test]
 fn a_replay_has_one_clock() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    stage.model.keys =
-        KeyBindings::replay(&stage.session.kitchen, &KeyFileBindings::default()).expect("the keys are free");
-    let trial_length = at(90.0);
-    let playback = Playback { trial_length, event: 40, events: 90, ..Playback::new("P01-1".to_string()) };
-    stage.model.playback = Some(playback);
+    stage.replays(Playback { trial_length: at(90.0), event: 40, events: 90, ..Playback::new("P01-1".to_string()) });
     for size in SIZES {
         let screen = stage.screen(size);
         assert!(screen.contains(" 0:19 of 1:30"), "{screen}");
@@ -133,7 +126,9 @@ fn help_and_the_question_before_leaving() {
     stage.model.size = (80, 24);
     stage.shows((80, 24), &["help page 1 of 5", "space stop the robot, at once", "5 look at this later"]);
     stage.model.size = (120, 40);
-    check_snapshot("console", "help_120x40", stage.screen((120, 40)));
+    let help = stage.screen((120, 40));
+    assert!(!help.contains('…'), "a line is cut: {help}");
+    check_snapshot("console", "help_120x40", help);
     stage.model.size = (200, 60);
     assert!(stage.screen((200, 60)).contains("shift-tab go to the previous panel"), "keys with long names are whole");
     stage.wait(1.0);
@@ -291,11 +286,8 @@ fn a_card_tells_how_to_start_and_another_what_came_of_the_trial() {
 #[test]
 fn the_keys_of_a_replay_and_the_served_orders_fit_the_smallest_console() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    stage.model.keys =
-        KeyBindings::replay(&stage.session.kitchen, &KeyFileBindings::default()).expect("the keys are free");
-    let mut playback = Playback::new("2026-03-14-P01-1".to_string());
-    (playback.playing, playback.event, playback.events) = (true, 43210, 59289);
-    stage.model.playback = Some(playback);
+    let name = "2026-03-14-P01-1".to_string();
+    stage.replays(Playback { playing: true, event: 43210, events: 59289, ..Playback::new(name) });
     stage.shows_everywhere(&["esc leave", "? help", "left/right step", "0 served", "play 1x", " recording "]);
 }
 
@@ -365,8 +357,7 @@ fn orders_and_errors_are_explained_at_every_size() {
     stage.shows_everywhere(&needs);
     stage.shows_everywhere(&[why]);
     stage.shows_everywhere(&believed);
-    stage.model.keys = KeyBindings::replay(&stage.session.kitchen, &KeyFileBindings::default()).expect("free keys");
-    stage.model.playback = Some(Playback::new("P01-1".to_string()));
+    stage.replays(Playback::new("P01-1".to_string()));
     stage.shows_everywhere(&needs);
     stage.shows_everywhere(&[why]);
     stage.session.spec.console.visibility = WizardVisibility::State;
@@ -662,7 +653,7 @@ fn a_replay_says_at_which_landmark_it_stands_for_as_long_as_it_stands_there() {
     let words = "error 1 of 17: take salmon: cause (simulated participant): false belief about recipe of crab maki (order 2); \
                  order 1 needs tuna; costs 2 presses";
     let landmark = Some((10, Some(ReplayLandmark::Error), words.to_string()));
-    stage.replays(Playback { length: at(40.0), event: 10, events: 90, landmark, ..Playback::new("S001".to_string()) });
+    stage.replays(Playback { event: 10, events: 90, landmark, ..Playback::new("S001".to_string()) });
     stage.model.clock = at(3600.0);
     stage.shows_everywhere(&["error 1 of 17: take salmon", "costs 2 presses"]);
     stage.model.say(NoticeLevel::Refused, "the recording has no later error");

@@ -4,8 +4,7 @@ use crossterm::event::KeyCode;
 use tomcom::console::console_model::Dialog;
 use tomcom::console::form::{FormContent, sheet};
 use tomcom::console::lists::ReasonFor;
-use tomcom::console::preflight::ParticipantDisplayHealth;
-use tomcom::console::preflight::checks;
+use tomcom::console::preflight::{ParticipantDisplayHealth, checks};
 use tomcom::console::probe_keys::status;
 use tomcom::console::text_input::TextInput;
 use tomcom::console::{ConsoleCommand, KeyBindings, KeyFileBindings};
@@ -24,13 +23,18 @@ use crate::support::*;
 fn planned(slot: usize, instructed: bool) -> Stage {
     let study = session_file("study").study().expect("a plan");
     let (spec, _) = study.settings(WantedRecording { participant: 0, slot, attempt: 1, instructed });
-    let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
-    stage.session = Session::new(kitchen("sushi"), spec, 0);
-    stage.next_phase();
-    stage
+    Stage::of_session(spec)
 }
 
 impl Stage {
+    /// The console of a session of the study, in its first phase.
+    fn of_session(spec: SessionSpec) -> Stage {
+        let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
+        stage.session = Session::new(kitchen("sushi"), spec, 0);
+        stage.next_phase();
+        stage
+    }
+
     fn next_phase(&mut self) {
         let (phase, number) = (self.session.next_phase(), self.session.protocol.as_ref().map(|it| it.number + 1));
         let (phase, number) = phase.zip(number).expect("one more phase");
@@ -44,10 +48,7 @@ fn the_sheets_around_a_trial_fit_every_size() {
     for size in SIZES {
         let mut stage = planned(0, false);
         stage.model.size = size;
-        let screen = stage.screen(size);
-        for text in ["INSTRUCTION", "P01 practice", "Ask for questions.", "tick this step as done"] {
-            assert!(screen.contains(text), "{text:?} at {size:?} in\n{screen}");
-        }
+        stage.shows(size, &["INSTRUCTION", "P01 practice", "Ask for questions.", "tick this step as done"]);
         let mut stage = planned(2, true);
         stage.model.size = size;
         stage.shows(size, &["P01 trial 2/2 wizard"]);
@@ -56,22 +57,12 @@ fn the_sheets_around_a_trial_fit_every_size() {
         stage.at(9.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
         stage.shows(size, &[". next phase: questionnaire"]);
         stage.at(9.0, Event::Protocol(ProtocolEvent::PhaseStarted { phase: StudyPhase::Questionnaire, number: 2 }));
-        stage.at(
-            9.0,
-            Event::Protocol(ProtocolEvent::ItemAnswered { item: "too_often".to_string(), answer: 6_u8.into() }),
-        );
-        stage.at(9.0, Event::Protocol(ProtocolEvent::ItemShown { item: "too_often".to_string() }));
-        let screen = stage.screen(size);
-        for text in [
-            "QUESTIONNAIRE",
-            "The signals were given too often.",
-            "[6]",
-            "strongly agree",
-            "0 no answer",
-            "enter next item",
-        ] {
-            assert!(screen.contains(text), "{text:?} at {size:?} in\n{screen}");
-        }
+        let item = "too_often".to_string();
+        stage.at(9.0, Event::Protocol(ProtocolEvent::ItemAnswered { item: item.clone(), answer: 6_u8.into() }));
+        stage.at(9.0, Event::Protocol(ProtocolEvent::ItemShown { item }));
+        let item = ["The signals were given too often.", "[6]", "strongly agree", "0 no answer", "enter next item"];
+        stage.shows(size, &item);
+        stage.shows(size, &["QUESTIONNAIRE"]);
         stage.at(9.0, Event::Protocol(ProtocolEvent::AnswersShown));
         stage.shows(size, &["6 The signals were given too often.", "to the item without an answer"]);
     }
@@ -332,10 +323,7 @@ fn the_sheet_of_the_tutorial_tells_where_the_participant_is() {
             give(&mut stage, TutorialEvent::Shown { step: next, by: TutorialPageTurner::Wizard });
         }
         stage.model.size = size;
-        let screen = stage.screen(size);
-        for text in ["Tutorial of the participant", "wrong answers: 1", "0 ends the tutorial"] {
-            assert!(screen.contains(text), "{text:?} at {size:?} in\n{screen}");
-        }
+        let screen = stage.shows(size, &["Tutorial of the participant", "wrong answers: 1", "0 ends the tutorial"]);
         if size == SIZES[0] {
             check_snapshot("console", "tutorial_80x24", screen);
         }
@@ -361,10 +349,7 @@ fn asked(names: &[&str]) -> Stage {
     }
     let study = files.study().expect("a plan");
     let (spec, _) = study.settings(WantedRecording { participant: 0, slot: 1, attempt: 1, instructed: true });
-    let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
-    stage.session = Session::new(kitchen("sushi"), spec, 0);
-    stage.next_phase();
-    stage
+    Stage::of_session(spec)
 }
 
 /// A console in a trial with probes, of a participant at the display, whose page is connected or not.
@@ -535,8 +520,7 @@ fn a_probe_is_asked_for_paused_and_skipped() {
     stage.wait(1.0);
     assert_eq!(input(stage.key(KeyCode::Char('.'))), Some(Event::TrialPaused));
     stage.at(70.0, Event::TrialPaused);
-    stage.shows((120, 40), &["The probe is paused"]);
-    stage.shows((120, 40), &["PROBE PAUSED"]);
+    stage.shows((120, 40), &["The probe is paused", "PROBE PAUSED"]);
     stage.wait(1.0);
     assert_eq!(input(stage.key(KeyCode::Char('.'))), Some(Event::TrialResumed));
     stage.at(72.0, Event::TrialResumed);
@@ -663,9 +647,7 @@ fn a_console_names_the_arm_of_the_plan() {
     let study = files.study().expect("a plan");
     let slot = study.slots(0).iter().position(|slot| slot.condition == StudyArm::WizardWithAdvice).expect("a trial");
     let (spec, _) = study.settings(WantedRecording { participant: 0, slot, attempt: 1, instructed: true });
-    let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
-    stage.session = Session::new(kitchen("sushi"), spec, 0);
-    stage.next_phase();
+    let mut stage = Stage::of_session(spec);
     stage.shows((120, 40), &["/2, wizard with advice"]);
     stage.at(0.0, Event::TrialStarted);
     stage.shows((120, 40), &["/2 wizard with advice"]);
@@ -676,9 +658,7 @@ fn a_console_names_the_arm_of_the_plan() {
 fn a_repeated_trial_keeps_the_state_of_the_display_in_the_head_line() {
     let study = session_file("study").study().expect("a plan");
     let (spec, _) = study.settings(WantedRecording { participant: 0, slot: 1, attempt: 2, instructed: true });
-    let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
-    stage.session = Session::new(kitchen("sushi"), spec, 0);
-    stage.next_phase();
+    let mut stage = Stage::of_session(spec);
     stage.model.display = Some(ParticipantDisplayHealth {
         redraw_ms: Some(84.0),
         page: Some([1920, 1080]),

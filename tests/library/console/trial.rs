@@ -4,9 +4,8 @@ use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use tomcom::console::ConsoleCommand;
 use tomcom::console::console_model::{Dialog, LslStatus};
 use tomcom::console::gaze_check::AccuracyCheckAction;
-use tomcom::console::lists::{StartPrompt, StartReply};
-use tomcom::console::preflight::ParticipantDisplayHealth;
-use tomcom::console::preflight::checks;
+use tomcom::console::lists::{ListChoice, StartPrompt};
+use tomcom::console::preflight::{ParticipantDisplayHealth, checks};
 use tomcom_core::gaze::calibration::{GazeAccuracy, TargetAccuracy};
 use tomcom_core::gaze::recorded::RecordedGazeSummary;
 use tomcom_session::gaze_check::{AcceptedGazeCheck, GazeCheckEvent};
@@ -133,10 +132,10 @@ fn a_question_before_a_recording_is_answered_by_a_digit_and_enter() {
     assert_eq!(question.reply(&key(KeyCode::Char('7'))), None, "no answer has this digit");
     assert_eq!(question.chosen, Some(1));
     assert_eq!(question.reply(&key(KeyCode::Char('1'))), None);
-    assert_eq!(question.reply(&key(KeyCode::Enter)), Some(StartReply::Answer(0)));
+    assert_eq!(question.reply(&key(KeyCode::Enter)), Some(ListChoice::Chosen(0)));
     question.reply(&key(KeyCode::Backspace));
     assert_eq!(question.reply(&key(KeyCode::Enter)), None);
-    assert_eq!(question.reply(&key(KeyCode::Esc)), Some(StartReply::Leave));
+    assert_eq!(question.reply(&key(KeyCode::Esc)), Some(ListChoice::Leave));
 }
 
 #[test]

@@ -40,15 +40,7 @@ fn merge(messages: &[(f64, String, Vec<u8>)]) -> (Vec<FixationFragment>, Vec<Pup
         lids.extend(blinks.expire(now));
         let told = message::read(topic.as_bytes(), payload, "wall");
         assert_eq!(told.malformed, 0);
-        for found in told.fixations {
-            let span_s = [found.timestamp, found.timestamp + found.duration_ms / 1000.0];
-            let window = FixationFragment {
-                id: found.id,
-                at: None,
-                span_s,
-                dispersion_deg: found.dispersion_deg,
-                confidence: found.confidence,
-            };
+        for window in told.fixations {
             whole.extend(fixations.take(window, now));
         }
         lids.extend(told.blink.into_iter().flat_map(|blink| blinks.take(blink, now)).flatten());

@@ -101,27 +101,19 @@ fn broken_messages_of_pupil_are_counted_and_nothing_more() {
     }
     assert_eq!(read(&[0x91; 100_000]).malformed, 1, "lists in lists in lists");
     // One item that is none does not cost the others.
-    let item = |x: f64| {
-        let text = Value::from;
-        let place = Value::Array(vec![Value::from(x), Value::from(0.5)]);
-        let time = (text("timestamp"), Value::from(7));
-        Value::Map(vec![(text("norm_pos"), place), (text("confidence"), Value::from(1.0)), time])
+    let item = |x: f64, confidence: Value, timestamp: Value| {
+        let place = Value::Array(vec![x.into(), 0.5.into()]);
+        let fields = [("norm_pos", place), ("confidence", confidence), ("timestamp", timestamp)];
+        Value::Map(fields.into_iter().map(|(name, value)| (Value::from(name), value)).collect())
     };
-    let items = vec![item(0.1), item(f64::NAN), Value::Nil, item(f64::INFINITY), item(0.2)];
-    let mut bytes = Vec::new();
-    let datum = Value::Map(vec![(Value::from("gaze_on_surfaces"), Value::Array(items))]);
-    rmpv::encode::write_value(&mut bytes, &datum).expect("written");
-    let told = read(&bytes);
+    let read_items = |items: Vec<Value>| read(&packed(&[("gaze_on_surfaces", Value::Array(items))]));
+    let at = |x: f64| item(x, 1.0.into(), 7.into());
+    let told = read_items(vec![at(0.1), at(f64::NAN), Value::Nil, at(f64::INFINITY), at(0.2)]);
     assert_eq!((told.gaze.len(), told.malformed), (2, 3));
     assert_eq!(told.gaze[0].timestamp, 7.0);
     // Pupil time starts anywhere, and where a pupil was lost the confidence is NaN.
-    let place = Value::Array(vec![Value::from(0.5), Value::from(0.5)]);
-    let item = |confidence: Value| {
-        let fields = [("norm_pos", place.clone()), ("confidence", confidence), ("timestamp", Value::from(-3.5))];
-        Value::Map(fields.into_iter().map(|(name, value)| (Value::from(name), value)).collect())
-    };
-    let items = vec![item(Value::from(f64::NAN)), item(Value::from(0.9)), item(Value::Nil)];
-    let told = read(&packed(&[("gaze_on_surfaces", Value::Array(items))]));
+    let confident = |confidence: Value| item(0.5, confidence, (-3.5).into());
+    let told = read_items(vec![confident(f64::NAN.into()), confident(0.9.into()), confident(Value::Nil)]);
     assert_eq!((told.gaze.len(), told.malformed), (2, 1));
     assert!(told.gaze[0].confidence.is_nan() && told.gaze.iter().all(|gaze| gaze.timestamp == -3.5));
 }
@@ -333,9 +325,7 @@ const NEON: &str = "section id,recording id,timestamp [ns],gaze detected on surf
 
 /// Reads a file with these bytes, whose surface is the whole display.
 fn read_bytes(name: &str, bytes: &[u8], missing_confidence: MissingConfidence) -> Result<GazeFile, String> {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("gaze-tables");
-    std::fs::create_dir_all(&folder).expect("a folder");
-    let path = folder.join(format!("{name}.csv"));
+    let path = folder("tables").join(format!("{name}.csv"));
     std::fs::write(&path, bytes).expect("written");
     read_path(&path, missing_confidence)
 }

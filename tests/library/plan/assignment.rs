@@ -183,6 +183,7 @@ fn made(study: &Study, slot: usize, attempt: u32, outcome: RecordingOutcome) -> 
         recording,
         code: spec.participant.code,
         recorded_as: None,
+        kind: spec.participant.kind,
         step,
         consent: true,
         instructed: true,
@@ -280,6 +281,17 @@ fn practice_has_no_probes_and_may_be_shorter_than_they_need() {
     let mut trial = of(1);
     trial.trial.seconds = 60.0;
     assert!(trial.check().is_err_and(|error| error.found.contains("takes 75 s")), "a trial of that length");
+}
+
+#[test]
+fn the_command_that_goes_on_with_a_rehearsal_says_that_it_is_one() {
+    let study = study(|files| files.spec.participant.kind = ParticipantKind::Display);
+    let open = PlanRecording { kind: ParticipantKind::Simulated, ..made(&study, 0, 1, RecordingOutcome::Open) };
+    let out = folder("rehearsal");
+    let mut figures = StudyProgress::from_study(&study, Path::new("plan.toml"), &out).expect("an empty folder");
+    figures.participants[0] = ParticipantProgress::from_recordings(&study, 0, &[open]).expect("of the plan");
+    let told = describe(&figures, u16::MAX);
+    assert!(told.contains("go on with tomcom operate plan.toml --code P01 --participant simulated --out "), "{told}");
 }
 
 /// A name that a terminal breaks cannot be found, nor typed again.

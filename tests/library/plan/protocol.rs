@@ -23,11 +23,8 @@ impl Run {
         plan.familiarisation.as_mut().expect("practice").presses = 30;
         let study = files.study().expect("a plan");
         let (spec, trial) = study.settings(wanted);
-        let mut header = LogHeader::new(spec.clone(), trial, files.kitchen.layout, files.kitchen.recipes);
-        header.started = Some("2026-03-14T09:00:00.000Z".to_string());
-        let log = LogWriter::create_live(out, "2026-03-14", &header).expect("the folder can be written");
-        let kitchen = Arc::new(files.kitchen.kitchen);
-        let engine = SessionEngine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen));
+        files.spec = spec;
+        let (log, engine) = live_recording(files, trial, out);
         Run { engine, log, now_s: 0.0 }
     }
 

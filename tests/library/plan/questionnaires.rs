@@ -152,6 +152,7 @@ fn the_person_is_asked_before_the_first_trial_and_only_then() {
         recording: "2026-03-14-P01-1".to_string(),
         code: spec.participant.code.clone(),
         recorded_as: None,
+        kind: spec.participant.kind,
         step: spec.step.expect("a step"),
         consent: true,
         instructed: true,

@@ -1,6 +1,7 @@
 //! The participant's tutorial: what its steps ask for, what the page is told meanwhile, and that it is no part of the trial.
 
 use tomcom::run::leaving::TutorialProgress;
+use tomcom_core::kitchen::IngredientStorage;
 use tomcom_devices::sight::{DisplayStage, ShownContent, scene, sight};
 use tomcom_session::plan::{PhaseSpec, Tutorial, TutorialStep, TutorialStepKind};
 use tomcom_session::preflight_checks::participant;
@@ -37,12 +38,8 @@ impl Lesson {
         let mut files = files();
         files.spec.probes = Some(ProbeSpec::default());
         files.tutorial = Some(tutorial("sushi.toml"));
-        let spec = files.study().and_then(|study| study.tutorial_alone("P07")).expect("a tutorial");
-        let mut header = LogHeader::new(spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
-        header.started = Some("2026-03-14T09:00:00.000Z".to_string());
-        let log = LogWriter::create_live(out, "2026-03-14", &header).expect("the folder can be written");
-        let kitchen = Arc::new(files.kitchen.kitchen);
-        let engine = SessionEngine::new(kitchen.clone(), spec, 0, CostToGo::new(kitchen));
+        files.spec = files.study().and_then(|study| study.tutorial_alone("P07")).expect("a tutorial");
+        let (log, engine) = live_recording(files, 0, out);
         let mut lesson = Lesson { engine, log, now_s: 0.0 };
         let begun = ProtocolEvent::PhaseStarted { phase: StudyPhase::Tutorial, number: 1 };
         assert_eq!(lesson.input(Event::Protocol(begun)), None);
@@ -75,6 +72,14 @@ impl Lesson {
             None => TutorialEvent::Ended { by },
         };
         self.tell(event)
+    }
+
+    /// Ends the session, and verifies its recording.
+    fn check_recording(mut self) {
+        assert_eq!(self.input(Event::SessionEnded), None);
+        self.log.flush().expect("the log can be written");
+        let found = verify(self.log.folder()).expect("a recording");
+        assert!(found.verified, "{found:?}");
     }
 
     /// The wizard turns pages until this step.
@@ -144,11 +149,7 @@ fn a_participant_goes_through_the_whole_tutorial() {
     let steps = session.tutorial().expect("a tutorial").0.steps.iter().filter(|step| step.has_presses());
     let presses = steps.map(|step| step.presses.len() as u64).sum();
     assert_eq!((reached.done, reached.presses, reached.wrong_answers), (reached.steps, presses, 4));
-    assert_eq!(lesson.input(Event::SessionEnded), None);
-    let log = lesson.log.folder().join(LOG_NAME);
-    lesson.log.flush().expect("the log can be written");
-    let found = verify(&log).expect("a recording");
-    assert!(found.verified, "{found:?}");
+    lesson.check_recording();
 }
 
 #[test]
@@ -177,12 +178,10 @@ fn what_the_robot_shows_is_asked_of_nobody_and_framed_where_the_robot_does_it() 
     let page = sight(lesson.session()).tutorial.expect("a page");
     assert_eq!(page.hint, None, "the participant has nori, too, and is not to take it");
     let kitchen = lesson.session().kitchen.clone();
-    let shelf = kitchen
-        .storages
-        .iter()
-        .position(|shelf| shelf.agent == Agent::Robot && kitchen.content(shelf.item).name == "nori");
+    let is_nori = |shelf: &IngredientStorage| shelf.agent == Agent::Robot && kitchen.content(shelf.item).name == "nori";
+    let shelf = kitchen.storages.iter().position(is_nori).expect("a shelf");
     let board = kitchen.location_named("assembly_board").expect("a location").index();
-    let spots = serde_json::json!([{"place": {"storage": shelf.expect("a shelf")}}, {"place": {"location": board}}]);
+    let spots = json!([{"place": {"storage": shelf}}, {"place": {"location": board}}]);
     assert_eq!(serde_json::to_value(&page.frames).expect("JSON"), spots);
 }
 
@@ -219,9 +218,8 @@ fn a_tutorial_in_another_language_than_the_page_is_told_before_it_begins() {
     for (language, is_told) in [("en", false), ("fr", true)] {
         let mut files = files();
         files.spec.display.language = language.to_string();
-        let spec = files.study().and_then(|study| study.tutorial_alone("P07")).expect("a tutorial");
-        let kitchen = Arc::new(files.kitchen.kitchen);
-        let engine = SessionEngine::new(kitchen.clone(), spec, 0, CostToGo::new(kitchen));
+        files.spec = files.study().and_then(|study| study.tutorial_alone("P07")).expect("a tutorial");
+        let engine = engine_of(files, 0);
         assert_eq!(scene(engine.session()).foreign_tutorial, is_told);
         let checks = participant(engine.session(), at(0.0), "g", None);
         assert_eq!(checks.iter().any(|check| check.name == "tutorial"), is_told, "{checks:?}");
@@ -392,8 +390,5 @@ fn the_time_of_recipe_cards_continues_when_they_are_shown_again() {
     assert_eq!(left_s(&lesson), None);
     lesson.turn_to("order");
     assert_eq!(left_s(&lesson), None, "only recipe cards have a time");
-    assert_eq!(lesson.input(Event::SessionEnded), None);
-    let log = lesson.log.folder().join(LOG_NAME);
-    lesson.log.flush().expect("the log can be written");
-    assert!(verify(&log).expect("a recording").verified);
+    lesson.check_recording();
 }

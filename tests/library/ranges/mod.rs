@@ -4,10 +4,9 @@
 mod simulated;
 
 use tomcom::run::files::read_kitchen;
-use tomcom_core::base::number_range::{NumberRange, numbers};
+use tomcom_core::base::number_range::{NumberRange, numbers, range_of};
 use tomcom_core::kitchen::files::LAYOUT_RANGES;
-use tomcom_core::mind::choice::ChoiceModel;
-use tomcom_core::mind::choice::ChoiceParameters;
+use tomcom_core::mind::choice::{ChoiceModel, ChoiceParameters};
 use tomcom_core::robot::ArmSample;
 use tomcom_session::files::read_human_model;
 use tomcom_session::log::SimulatedLogState;
@@ -132,9 +131,7 @@ fn questionnaire() -> toml::Table {
 
 /// A folder for the files of a test, empty.
 fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("ranges").join(name);
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(folder.join("sessions")).expect("a folder");
+    let folder = empty_folder(format!("ranges/{name}"));
     for copied in ["layouts", "recipes", "sessions/questionnaires"] {
         fs::create_dir_all(folder.join(copied)).expect("a folder");
         for file in fs::read_dir(copied).expect("a folder of the program") {
@@ -193,27 +190,11 @@ fn extremes(range: &NumberRange) -> Vec<toml::Value> {
     }
     let (least, most) = (range.least, range.most);
     let beyond = |end: f64, step: f64| end + step * end.abs().max(1e-9) * 1e-6;
-    let all = [
-        0.0,
-        -0.0,
-        -1.0,
-        f64::MIN_POSITIVE,
-        5e-324,
-        -5e-324,
-        1e-5,
-        1e308,
-        -1e308,
-        f64::INFINITY,
-        f64::NEG_INFINITY,
-        f64::NAN,
-        beyond(least, -1.0),
-        least,
-        beyond(least, 1.0).min(most),
-        beyond(most, -1.0).max(least),
-        most,
-        beyond(most, 1.0),
-    ];
-    all.map(toml::Value::Float).to_vec()
+    let finite = [0.0, -0.0, -1.0, f64::MIN_POSITIVE, 5e-324, -5e-324, 1e-5, 1e308, -1e308];
+    let at_least = [beyond(least, -1.0), least, beyond(least, 1.0).min(most)];
+    let at_most = [beyond(most, -1.0).max(least), most, beyond(most, 1.0)];
+    let all = finite.into_iter().chain([f64::INFINITY, f64::NEG_INFINITY, f64::NAN]).chain(at_least).chain(at_most);
+    all.map(toml::Value::Float).collect()
 }
 
 fn as_number(value: &toml::Value) -> f64 {
@@ -229,13 +210,12 @@ fn check_complete(name: &str, table: &toml::Table, ranges: &[NumberRange]) {
     let numbers = numbers(table, "").expect("numbers");
     assert!(!numbers.is_empty(), "{name} has no numbers");
     for (path, value) in &numbers {
-        let range = tomcom_core::base::number_range::range_of(ranges, path);
-        let range = range.unwrap_or_else(|| panic!("{name}: no range for {path} = {value}"));
+        let range = range_of(ranges, path).unwrap_or_else(|| panic!("{name}: no range for {path} = {value}"));
         assert!(range.holds(*value), "{name}: {path} = {value}, out of {range}");
     }
     for range in ranges {
         let own = std::slice::from_ref(range);
-        let is_met = numbers.iter().any(|(path, _)| tomcom_core::base::number_range::range_of(own, path).is_some());
+        let is_met = numbers.iter().any(|(path, _)| range_of(own, path).is_some());
         assert!(is_met, "{name}: no number has the path {}", range.path);
     }
 }
@@ -245,7 +225,7 @@ fn every_number_of_every_settings_file_has_a_range() {
     let mut all = every_setting();
     set(&mut all, "assistant.concept.wait_s", 10.0.into());
     check_complete("a session file", &all, &ranges::of_sessions());
-    check_complete("a questionnaire", &questionnaire(), &ranges::OF_QUESTIONNAIRES);
+    check_complete("a questionnaire", &questionnaire(), ranges::OF_QUESTIONNAIRES);
     for layout in ["sushi", "burger"] {
         let text = fs::read_to_string(format!("layouts/{layout}.toml")).expect("a layout");
         check_complete(layout, &text.parse().expect("a layout is TOML"), &LAYOUT_RANGES);
@@ -385,7 +365,7 @@ fn a_questionnaire_with_an_extreme_number_is_refused() {
     set(&mut asks, "plan.questionnaire.file", toml::Value::String(asked.to_string()));
     fs::write(&session, toml::to_string(&asks).expect("TOML")).expect("a file can be written");
     for range in ranges::OF_QUESTIONNAIRES {
-        check_extremes(&range, &questionnaire(), &file, || told(read_session(&session)));
+        check_extremes(range, &questionnaire(), &file, || told(read_session(&session)));
     }
     fs::remove_dir_all(folder).expect("the folder can be removed");
 }

@@ -46,11 +46,7 @@ fn a_session_that_was_cut_goes_on_with_its_open_offer() {
     files.spec.assistant.rollout.rollouts = 32;
     // Nobody has seen the orders, and signals cost nothing: something is worth saying.
     files.spec.assistant.cost_of_communication = 0.0;
-    let kitchen = Arc::new(files.kitchen.kitchen);
-    let mut header = LogHeader::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
-    header.started = Some("2026-03-14T10:00:00Z".to_string());
-    let mut log = LogWriter::create_live(&folder("offers-live"), "2026-03-14", &header).expect("a folder");
-    let mut engine = SessionEngine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen));
+    let (mut log, mut engine) = live_recording(files, 0, &folder("offers-live"));
     let mut advisor = engine.advisor();
     let mut events = engine.input(SessionTime::ZERO, Event::TrialStarted).events;
     while engine.session().offers.open().is_none() {
@@ -70,8 +66,8 @@ fn a_session_that_was_cut_goes_on_with_its_open_offer() {
 
 #[test]
 fn a_golden_recording_keeps_its_offers() {
-    let mut replay =
-        RecordingReplay::open(Path::new("tests/golden/format-3-offers.jsonl")).expect("a golden recording");
+    let golden = Path::new("tests/golden/format-3-offers.jsonl");
+    let mut replay = RecordingReplay::open(golden).expect("a golden recording");
     replay.run().expect("a golden recording");
     let offers = TimedOffer::all(replay.session());
     let told: Vec<(Option<f64>, Option<OfferCloseReason>)> =

@@ -97,12 +97,7 @@ fn around_probes(engine: &SessionEngine, random: &mut impl RngExt) -> Event {
 #[test]
 fn whatever_hands_do_around_probes_the_recording_verifies_and_replays_to_the_same_session() {
     for seed in 0..3 {
-        let files = by_hand(seed);
-        let kitchen = Arc::new(files.kitchen.kitchen);
-        let header = LogHeader::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
-        let mut log = LogWriter::create_live(&folder(&format!("probes-hand-{seed}")), "2026-03-14", &header)
-            .expect("the folder can be written");
-        let mut engine = SessionEngine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen));
+        let (mut log, mut engine) = live_recording(by_hand(seed), 0, &folder(&format!("probes-hand-{seed}")));
         let mut random = stream(seed, "hand at probes", 0);
         let mut now_s = 0.5;
         let mut give = |engine: &mut SessionEngine, now_s: f64, event: Event| {
@@ -132,12 +127,7 @@ fn whatever_hands_do_around_probes_the_recording_verifies_and_replays_to_the_sam
 
 #[test]
 fn a_session_that_was_killed_in_a_probe_goes_on_in_it_where_it_was() {
-    let files = by_hand(5);
-    let kitchen = Arc::new(files.kitchen.kitchen);
-    let mut header = LogHeader::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
-    header.started = Some("2026-03-14T10:00:00Z".to_string());
-    let mut log = LogWriter::create_live(&folder("probes-killed"), "2026-03-14", &header).expect("a folder");
-    let mut engine = SessionEngine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen));
+    let (mut log, mut engine) = live_recording(by_hand(5), 0, &folder("probes-killed"));
     let mut events = engine.input(SessionTime::ZERO, Event::TrialStarted).events;
     let asked =
         |engine: &SessionEngine| engine.session().probes.open.as_ref().and_then(|open| open.question()).is_some();

@@ -145,6 +145,14 @@ fn a_page_says_what_the_error_was_why_and_what_was_believed_before_it() {
     let believed =
         |by: &str| pages.iter().any(|(_, page)| page.contains(&format!("Believed wrong before it, by the {by}:")));
     assert!(believed("estimate") && believed("simulated participant"));
+    // The participant's own belief is known at presses alone: it is as old as the press before, at most.
+    for (_, page) in &pages {
+        let Some((before, own)) = page.split_once("by the simulated participant:\n\n") else { continue };
+        let at = before.split_once(" at ").and_then(|(_, rest)| rest.split_once(" (+")).expect("a time").0;
+        for line in own.lines().take_while(|line| line.starts_with("- ")) {
+            assert!(line.ends_with(" at the earliest") && !line.contains(&format!("since {at} ")), "{at}: {line}");
+        }
+    }
 }
 
 #[test]
@@ -239,57 +247,59 @@ fn labels_keep_apart_and_bars_end_with_the_trial() {
 }
 
 #[test]
-fn curves_are_of_all_false_beliefs_that_last_and_no_two_at_a_time_have_one_colour() {
+fn each_false_belief_that_lasts_has_a_curve_and_each_aspect_its_own_colour() {
+    let (mut files, out) = (session("default.toml"), folder("scene-curves"));
+    (files.spec.trial.seconds, files.spec.seed, files.spec.robot.arm) = (300.0, 11, ArmKind::Timed);
+    simulate_into(files, 1, &out);
+    for recording in [only_recording(&out), PathBuf::from("tests/golden/format-3-offers.jsonl")] {
+        let mut replay = RecordingReplay::open(&recording).expect("a recording");
+        let fixed = SessionScene::new(replay.session(), 0).fixed();
+        replay.run().expect("events of a session");
+        let (moments, _) = shown(&recording);
+        let aspects = &replay.session().kitchen.aspects;
+        let mut colours = BTreeMap::<_, BTreeSet<&str>>::new();
+        for row in &fixed {
+            let (EntityData::Line(style) | EntityData::Marks(style, _)) = &row.shown else { continue };
+            let Some((_, aspect)) = row.entity.strip_prefix("human/belief/").and_then(|rest| rest.split_once('/'))
+            else {
+                continue;
+            };
+            colours.entry(style.colour).or_default().insert(aspect);
+        }
+        assert_eq!(colours.len(), aspects.len());
+        assert!(colours.values().all(|aspects| aspects.len() == 1), "{colours:?}");
+        let lasting = replay.follower.false_beliefs.all().filter(|one| one.lasts(replay.session()));
+        let mut count = 0;
+        for held in lasting {
+            let name = aspects[held.aspect.index()].name.replace(|letter: char| !letter.is_alphanumeric(), "_");
+            let ended = held.ended.unwrap_or(replay.session().time);
+            let within = moments.iter().filter(|moment| (held.began..=ended).contains(&moment.time));
+            let mut rows = within.flat_map(|moment| &moment.rows);
+            let is_its = |row: &EntityUpdate| {
+                row.entity == format!("human/belief/estimated/{name}") && matches!(row.shown, EntityData::Value(_))
+            };
+            assert!(rows.any(is_its), "no curve of {held:?}");
+            count += 1;
+        }
+        assert!(count > 5, "{count} false beliefs last");
+    }
+}
+
+#[test]
+fn a_curve_begins_with_the_values_before_and_after_the_belief_turned_false() {
     let (moments, events) = shown(Path::new("tests/golden/format-3-offers.jsonl"));
-    let (mut colours, mut drawn, mut curves) = (BTreeMap::new(), BTreeMap::new(), Vec::new());
+    let mut curves = Vec::new();
     let mut open: BTreeMap<&str, Vec<(SessionTime, f64)>> = BTreeMap::new();
     for (moment, row) in moments.iter().flat_map(|moment| moment.rows.iter().map(move |row| (moment, row))) {
-        let Some((kind, aspect)) = row.entity.strip_prefix("human/belief/").and_then(|rest| rest.split_once('/'))
-        else {
-            continue;
-        };
+        let Some(aspect) = row.entity.strip_prefix("human/belief/estimated/") else { continue };
         match &row.shown {
-            EntityData::Line(style) => {
-                colours.insert(aspect, style.colour.expect("a colour"));
-            }
             EntityData::NoValue => curves.extend(open.remove_entry(aspect)),
-            EntityData::Value(p_truth) => {
-                if kind == "estimated" {
-                    open.entry(aspect).or_default().push((moment.time, *p_truth));
-                } else {
-                    assert!(*p_truth < FALSE_BELOW, "{row:?}");
-                }
-                let colour = colours[aspect];
-                let of_colour = drawn.insert(colour, (aspect, moment.time));
-                let goes_on = |other: &str| open.contains_key(other) && colours[other] == colour;
-                let is_apart = |(other, last)| other == aspect || (!goes_on(other) && moment.time >= last);
-                assert!(of_colour.is_none_or(is_apart), "{row:?} at {:?}: {of_colour:?}, {open:?}", moment.time);
-            }
+            EntityData::Value(p_truth) => open.entry(aspect).or_default().push((moment.time, *p_truth)),
             _ => {}
         }
     }
-    assert!(drawn.len() > 2 && drawn.len() <= 6, "{drawn:?}");
-    // A curve begins with the values before and after the belief turned false, of a press those at its time.
+    // Of a press, those at its time.
     curves.extend(open);
-    // Bars that last have a curve, if no six others go on. Without gaze, the estimate is seen at events alone, so some come late.
-    let goes_on = |began: SessionTime, ended: SessionTime| {
-        let spans = curves.iter().map(|(_, rows)| (rows[0].0, rows[rows.len() - 1].0));
-        spans.filter(|&(first, last)| first <= ended && last >= began).count()
-    };
-    for entity in moments.iter().flat_map(|moment| &moment.rows).map(|row| &row.entity).collect::<BTreeSet<_>>() {
-        let Some(aspect) = entity.strip_prefix("wrong_belief/") else { continue };
-        let bars = texts(&moments, entity);
-        for pair in bars.windows(2).filter(|pair| !pair[0].1.is_empty()) {
-            let (began, ended) = (pair[0].0.time, pair[1].0.time);
-            let is_its = |row: &EntityUpdate| row.entity == format!("human/belief/estimated/{aspect}");
-            let within = moments.iter().filter(|moment| (began..=ended).contains(&moment.time));
-            let is_drawn = within.flat_map(|moment| &moment.rows).any(is_its);
-            assert!(
-                is_drawn || ended.secs_since(began) < 3.0 || goes_on(began, ended) >= 6,
-                "{aspect} is wrong from {began:?} to {ended:?}"
-            );
-        }
-    }
     let time_of = |by: Agent| {
         let is_by = move |event: &Event| matches!(event, Event::Press { agent, .. } if *agent == by);
         let presses = events.iter().filter(move |stamped| is_by(&stamped.event));
@@ -558,4 +568,22 @@ fn a_signal_has_its_reason_as_long_as_it_is_shown_and_then_what_became_of_it() {
     assert!(says("**On the display**: no signal\n") && says("**Assistant**: no advice\n"));
     assert!(pages.iter().all(|(_, page)| !page.contains("**: \n")));
     assert!(!moments.iter().flat_map(|moment| &moment.rows).any(|row| row.entity.starts_with("robot/arm")));
+}
+
+#[test]
+fn the_page_of_signals_grows_no_longer_than_thirty_before_it_tells_all() {
+    let (mut files, out) = (session("default.toml"), folder("scene-many-signals"));
+    (files.spec.trial.condition, files.spec.trial.seconds, files.spec.seed) = (Condition::Assistant, 300.0, 7);
+    (files.spec.robot.arm, files.spec.assistant.cost_of_communication) = (ArmKind::Timed, 0.0);
+    simulate_into(files, 1, &out);
+    let (moments, _) = shown(&only_recording(&out));
+    let rows = moments.iter().flat_map(|moment| &moment.rows);
+    let pages: Vec<usize> = rows
+        .filter_map(|row| match &row.shown {
+            EntityData::WholePage(text) => Some(text.matches("- hit: ").count()),
+            _ => None,
+        })
+        .collect();
+    let (all, before) = pages.split_last().expect("a page of the signals");
+    assert!(*all > 30 && before.contains(&30) && before.iter().all(|signals| *signals <= 30), "{pages:?}");
 }

@@ -65,9 +65,14 @@ fn a_position_shows_the_same_estimate_by_whatever_way_one_comes_there() {
     while film.session.all_presses() == presses {
         press = film.position;
         film.wind(film.last_step());
+        // It is told where the screen has it: before the press.
+        let named = film.named_event().expect("an event");
+        assert!(!named.starts_with("estimated before"), "{named}");
     }
     assert_eq!(film.time(), time, "before the press, at its time");
     let before = film.position;
+    assert_eq!(film.landmark(ReplayLandmark::Error, true, false), Some(error), "the error is ahead");
+    assert_eq!(film.landmark(ReplayLandmark::Error, false, true), None, "it is the first one");
     let mut read = SeekableReplay::begin(&recording).expect("a recording");
     let left = Cell::new(before);
     read.read_while(|| left.replace(left.get().saturating_sub(1)) > 0).expect("events");

@@ -6,7 +6,7 @@ use tomcom_devices::sight::sight;
 use tomcom_session::event::WizardScreenContent;
 use tomcom_session::offers;
 
-use super::{at, check, engine, press, refused};
+use super::{at, check, corrected, engine, mark, press, refused};
 use crate::support::*;
 
 /// A running trial with an assistant whose advice the test gives.
@@ -50,7 +50,7 @@ fn pot(seconds: f64, net: f64) -> (f64, Event) {
 }
 
 fn marker(seconds: f64) -> (f64, Event) {
-    (seconds, Event::Marker { note: String::new(), observer: None })
+    (seconds, mark())
 }
 
 fn sent(seconds: f64, signal: Signal) -> (f64, Event) {
@@ -204,10 +204,8 @@ fn a_taken_offer_is_named_by_its_signal_and_is_not_sent_twice() {
     changes(&mut engine, &[pot(1.0, 1.0)]);
     let (seq, event) = offers::enter(engine.session(), at(1.8)).map(|(offer, event)| (offer.seq, event)).expect("one");
     assert_eq!(changes(&mut engine, &[(1.8, event.clone())]), expected(&[("taken", 1.8)]));
-    assert_eq!(
-        offers::enter(engine.session(), at(2.5)).map(|_| ()),
-        Err("the signal on offer was sent already".to_string())
-    );
+    let refused = offers::enter(engine.session(), at(2.5)).expect_err("it was sent");
+    assert_eq!(refused, "the signal on offer was sent already");
     let last = engine.session().offers.last().expect("it closed");
     assert_eq!((last.offer.seq, last.reason), (seq, OfferCloseReason::Taken));
     let again = engine.input(at(8.0), event);
@@ -320,12 +318,9 @@ fn an_error_gets_one_proposal_until_it_is_made() {
     let button = kitchen.button_named(Agent::Human, &presses[0]).expect("a button of the human");
     assert_eq!(told(&engine), serde_json::json!({ "next": [button.index()] }));
     // The task changes without a press of the human: the error has had its proposal.
-    let corrected = Event::KitchenCorrected { location: "counter".to_string(), content: "tuna raw".to_string() };
-    let again = with_advice(&mut engine, 1.5, corrected);
-    assert!(
-        again.iter().any(|event| matches!(event, Event::Advised(advice) if advice.proposal.is_some())),
-        "{again:?}"
-    );
+    let again = with_advice(&mut engine, 1.5, corrected("counter", "tuna raw"));
+    let proposes = |event: &Event| matches!(event, Event::Advised(advice) if advice.proposal.is_some());
+    assert!(again.iter().any(proposes), "{again:?}");
     assert!(!again.iter().any(|event| matches!(event, Event::SignalShown { .. })), "{again:?}");
     let followed = with_advice(&mut engine, 2.0, press(&presses[0]));
     assert_eq!((ends(&followed), proposed(&engine)), (vec![SignalEndReason::Outdated], None));
@@ -354,14 +349,13 @@ fn a_proposal_ends_by_another_press_by_a_change_that_spoils_it_and_after_its_tim
 
     let (mut engine, _) = after_an_error(|_| ());
     // With a full hand nothing can be taken.
-    let full = Event::KitchenCorrected { location: "human_hand".to_string(), content: "tuna raw".to_string() };
+    let full = corrected("human_hand", "tuna raw");
     let presses = proposed(&engine).expect("a proposal");
     assert!(presses[0].starts_with("take "), "{presses:?}");
     assert_eq!(ends(&with_advice(&mut engine, 2.0, full)), [SignalEndReason::Outdated]);
 
     let (mut engine, _) = after_an_error(|_| ());
-    let marker = Event::Marker { note: "later".to_string(), observer: None };
-    assert_eq!(ends(&with_advice(&mut engine, 6.0, marker)), [SignalEndReason::Elapsed]);
+    assert_eq!(ends(&with_advice(&mut engine, 6.0, mark())), [SignalEndReason::Elapsed]);
 }
 
 #[test]
@@ -387,17 +381,13 @@ fn a_proposal_on_the_display_teaches_the_estimate_nothing() {
 
 /// A trial with presses in these intervals; the time of the last.
 fn pressed(engine: &mut SessionEngine, intervals_s: &[f64]) -> (Vec<(&'static str, f64)>, f64) {
-    let mut inputs = vec![(0.0, Event::TrialStarted), (2.0, press("take rice"))];
-    let mut now_s = 2.0;
-    for interval_s in intervals_s {
+    let mut inputs = vec![(0.0, Event::TrialStarted)];
+    let mut now_s = 0.0;
+    for interval_s in [2.0].iter().chain(intervals_s) {
         now_s += interval_s;
         inputs.push((now_s, press("take rice")));
     }
     (check(engine, &inputs), now_s)
-}
-
-fn later(seconds: f64) -> (f64, Event) {
-    (seconds, Event::Marker { note: "later".to_string(), observer: None })
 }
 
 fn waits(kinds: &[(&str, f64)]) -> Vec<f64> {
@@ -407,7 +397,7 @@ fn waits(kinds: &[(&str, f64)]) -> Vec<f64> {
 /// The silences after the last press are noted at these seconds since then, and the assistant is asked at each.
 fn check_silences(engine: &mut SessionEngine, last_s: f64, until_s: f64, expected_s: &[f64]) {
     engine.take_questions();
-    let found = waits(&check(engine, &[later(last_s + until_s)]));
+    let found = waits(&check(engine, &[marker(last_s + until_s)]));
     assert_eq!(found.len(), expected_s.len(), "{found:?} after {last_s}");
     let asked = engine.take_questions();
     for (found, expected) in found.iter().zip(expected_s) {
@@ -438,11 +428,11 @@ fn a_silence_of_six_seconds_is_unusual_whoever_presses_faster_or_not_at_all() {
 fn a_press_ends_the_silence_and_a_pause_is_none() {
     let mut engine = engine(|_| ());
     let (_, last_s) = pressed(&mut engine, &[1.0, 1.0, 1.0]);
-    let kinds = check(&mut engine, &[later(last_s + 5.0), (last_s + 5.5, press("trash")), later(last_s + 11.0)]);
+    let kinds = check(&mut engine, &[marker(last_s + 5.0), (last_s + 5.5, press("trash")), marker(last_s + 11.0)]);
     assert!(waits(&kinds).is_empty(), "{kinds:?}");
     let now_s = last_s + 11.0;
     let kinds =
-        check(&mut engine, &[(now_s, Event::TrialPaused), (now_s + 10.0, Event::TrialResumed), later(now_s + 12.0)]);
+        check(&mut engine, &[(now_s, Event::TrialPaused), (now_s + 10.0, Event::TrialResumed), marker(now_s + 12.0)]);
     let found = waits(&kinds);
     assert!(found.len() == 1 && (found[0] - last_s - 5.5 - 16.0).abs() < 1e-6, "{found:?} after {last_s}");
 }
@@ -451,7 +441,7 @@ fn a_press_ends_the_silence_and_a_pause_is_none() {
 fn the_silence_that_is_recorded_is_the_time_since_the_last_press() {
     let mut engine = engine(|_| ());
     let (_, last_s) = pressed(&mut engine, &[1.0]);
-    let events = engine.input(at(last_s + 13.0), Event::Marker { note: String::new(), observer: None }).events;
+    let events = engine.input(at(last_s + 13.0), mark()).events;
     let silences = events.iter().filter_map(|stamped| match stamped.event {
         Event::HumanWaits { silent_ns } => Some(silent_ns),
         _ => None,

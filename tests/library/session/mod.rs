@@ -34,6 +34,15 @@ fn press(button: &str) -> Event {
     Event::Press { agent: Agent::Human, button: button.to_string(), at_ns: None, button_box: false }
 }
 
+fn corrected(location: &str, content: &str) -> Event {
+    Event::KitchenCorrected { location: location.to_string(), content: content.to_string() }
+}
+
+/// A mark of the wizard, which changes nothing.
+fn mark() -> Event {
+    Event::Marker { note: String::new(), observer: None }
+}
+
 /// Gives the inputs in turn; the kinds of all events with their seconds.
 fn check(engine: &mut SessionEngine, inputs: &[(f64, Event)]) -> Vec<(&'static str, f64)> {
     let mut kinds = Vec::new();

@@ -2,10 +2,10 @@
 
 use tomcom_session::headless;
 use tomcom_session::probe_sampling::{SOMETHING_ELSE, aspect, questions};
-use tomcom_session::probes::{ProbeDelayReason, ProbeEndReason, ProbeOrigin, ProbeSubject};
+use tomcom_session::probes::{ProbeDelayReason, ProbeEndReason, ProbeOrigin, ProbeSubject, StartedProbe};
 use tomcom_session::settings::ProbeSpec;
 
-use super::{at, check, engine, kitchen, press, refused};
+use super::{at, check, corrected, engine, kitchen, mark, press, refused};
 use crate::support::*;
 
 /// A session in which nothing is scheduled in the first minutes, so that the wizard asks for probes.
@@ -25,9 +25,18 @@ fn requested() -> Event {
     probe(ProbeEvent::Requested)
 }
 
+/// The wizard skips the questions of a probe.
+fn skipped(reason: &str) -> Event {
+    probe(ProbeEvent::Skipped { probe: 1, reason: reason.to_string() })
+}
+
+fn open(engine: &SessionEngine) -> Option<&StartedProbe> {
+    engine.session().probes.open.as_ref()
+}
+
 /// The first choice as the answer to a question.
 fn answered(engine: &SessionEngine, question: u32) -> Event {
-    let open = engine.session().probes.open.as_ref().expect("a probe is held");
+    let open = open(engine).expect("a probe is held");
     let answer = Some(open.questions[question as usize - 1].choices[0].clone());
     probe(ProbeEvent::Answered { probe: open.number, question, answer, confidence: None, on: AnswerDevice::Display })
 }
@@ -43,20 +52,19 @@ pub fn probes_of(events: &[TimestampedEvent]) -> Vec<(SessionTime, ProbeEvent)> 
 
 /// Lets the session go on until this time.
 fn until(engine: &mut SessionEngine, seconds: f64) -> Vec<TimestampedEvent> {
-    engine.input(at(seconds), Event::Marker { note: "now".to_string(), observer: None }).events
+    engine.input(at(seconds), mark()).events
 }
 
 #[test]
 fn a_probe_freezes_the_task_asks_one_question_after_another_and_counts_down() {
     let mut engine = on_request(|_| ());
     check(&mut engine, &[(0.0, Event::TrialStarted), (1.0, press("take rice"))]);
-    let state = engine.session().state;
     check(&mut engine, &[(20.0, requested())]);
     assert_eq!((engine.session().phase, engine.session().is_frozen()), (TrialPhase::Paused, true));
-    assert!(engine.session().probes.open.as_ref().is_some_and(|open| open.question().is_none()), "blank first");
+    assert!(open(&engine).is_some_and(|open| open.question().is_none()), "blank first");
     let before = engine.session().state;
     until(&mut engine, 22.0);
-    let number = engine.session().probes.open.as_ref().map_or(0, |open| open.questions.len());
+    let number = open(&engine).map_or(0, |open| open.questions.len());
     assert!((2..=4).contains(&number), "{number} questions");
     let mut seconds = 22.0;
     for question in 1..=number as u32 {
@@ -65,17 +73,11 @@ fn a_probe_freezes_the_task_asks_one_question_after_another_and_counts_down() {
         seconds += 1.0;
     }
     let last = seconds - 1.0;
-    assert_eq!(
-        engine.session().probes.open.as_ref().and_then(|open| open.closed),
-        Some((ProbeEndReason::Answered, at(last)))
-    );
+    assert_eq!(open(&engine).and_then(|open| open.closed), Some((ProbeEndReason::Answered, at(last))));
     until(&mut engine, last + 2.9);
     assert_eq!(engine.session().trial_clock(at(last + 2.9)), at(20.0), "the trial's clock stands still");
-    assert_eq!(
-        (engine.session().state, engine.session().presses[0]),
-        (before, 1),
-        "presses in it have no effect: {state:?}"
-    );
+    let now = (engine.session().state, engine.session().presses[0]);
+    assert_eq!(now, (before, 1), "presses in it have no effect");
     until(&mut engine, last + 3.1);
     assert_eq!((engine.session().phase, engine.session().is_frozen()), (TrialPhase::Running, false));
     assert_eq!(engine.session().trial_clock(at(last + 3.1)), at(20.1));
@@ -90,7 +92,7 @@ fn after_its_time_a_question_is_missed_and_late_answers_are_refused() {
     check(&mut engine, &[(0.0, Event::TrialStarted), (20.0, requested())]);
     until(&mut engine, 24.0);
     let late = answered(&engine, 1);
-    let number = engine.session().probes.open.as_ref().map_or(0, |open| open.questions.len()) as u32;
+    let number = open(&engine).map_or(0, |open| open.questions.len()) as u32;
     // The first question came at 21 s; each has 12 s.
     let events = probes_of(&until(&mut engine, 33.5));
     assert_eq!(events, [(at(33.0), ProbeEvent::Asked { probe: 1, question: 2 })]);
@@ -102,7 +104,7 @@ fn after_its_time_a_question_is_missed_and_late_answers_are_refused() {
     let closed = ProbeEvent::Closed { probe: 1, reason: ProbeEndReason::TimeOver };
     assert!(number == 2 || events.last() == Some(&(at(end_s), closed)), "{events:?}");
     assert!(refused(&mut engine, end_s + 1.0, late).contains("questions are over"), "late answers");
-    let answers = &engine.session().probes.open.as_ref().expect("a probe").answers;
+    let answers = &open(&engine).expect("a probe").answers;
     assert_eq!((answers[0].is_none(), answers[1].is_some()), (true, true));
     let events = probes_of(&until(&mut engine, end_s + 5.0));
     assert_eq!(events, [(at(end_s + 3.0), ProbeEvent::Ended { probe: 1 })]);
@@ -123,23 +125,16 @@ fn answers_are_taken_for_the_shown_question_and_from_its_choices_only() {
         probe(ProbeEvent::Answered { probe: 1, question: 1, answer, confidence, on: AnswerDevice::Console })
     };
     assert!(refused(&mut engine, 22.0, answer("a violin", None)).contains("no such choice"));
-    let choice = engine.session().probes.open.as_ref().expect("a probe").questions[0].choices[0].clone();
+    let choice = open(&engine).expect("a probe").questions[0].choices[0].clone();
     assert!(refused(&mut engine, 22.0, answer(&choice, Some(2))).contains("confidence"), "it is not asked");
     assert!(refused(&mut engine, 22.0, requested()).contains("already"));
-    let corrected = Event::KitchenCorrected { location: "counter".to_string(), content: "nori".to_string() };
-    assert!(refused(&mut engine, 22.0, corrected).contains("after the freeze probe"));
-    let unknown = probe(ProbeEvent::Answered {
-        probe: 1,
-        question: 1,
-        answer: None,
-        confidence: None,
-        on: AnswerDevice::Display,
-    });
-    check(&mut engine, &[(23.0, unknown)]);
-    let no_reason = probe(ProbeEvent::Skipped { probe: 1, reason: " ".to_string() });
-    assert!(refused(&mut engine, 23.0, no_reason).contains("reason"));
-    check(&mut engine, &[(24.0, probe(ProbeEvent::Skipped { probe: 1, reason: "phone".to_string() }))]);
-    let closed = engine.session().probes.open.as_ref().and_then(|open| open.closed);
+    assert!(refused(&mut engine, 22.0, corrected("counter", "nori")).contains("after the freeze probe"));
+    let (answer, on) = (None, AnswerDevice::Display);
+    let unknown = ProbeEvent::Answered { probe: 1, question: 1, answer, confidence: None, on };
+    check(&mut engine, &[(23.0, probe(unknown))]);
+    assert!(refused(&mut engine, 23.0, skipped(" ")).contains("reason"));
+    check(&mut engine, &[(24.0, skipped("phone"))]);
+    let closed = open(&engine).and_then(|open| open.closed);
     assert_eq!(closed, Some((ProbeEndReason::Skipped, at(24.0))));
 }
 
@@ -155,8 +150,7 @@ fn a_pause_in_a_probe_stops_its_time_and_the_trial_goes_on_after_the_probe_only(
     assert!(probes_of(&until(&mut engine, 100.0)).is_empty(), "nothing is due in a pause");
     check(&mut engine, &[(102.0, Event::TrialResumed), (103.0, answer)]);
     assert!(engine.session().is_frozen(), "the probe is held still");
-    let took =
-        engine.session().probes.open.as_ref().and_then(|open| open.answers[0].as_ref().map(|answer| answer.took));
+    let took = open(&engine).and_then(|open| Some(open.answers[0].as_ref()?.took));
     assert_eq!(took, Some(at(2.0)), "1 s before the pause and 1 s after it");
     // The second question is shown since 103 s; a pause of it does not count.
     check(&mut engine, &[(104.0, Event::TrialPaused), (114.0, Event::TrialResumed)]);
@@ -203,11 +197,10 @@ fn no_probe_begins_soon_after_a_signal_or_a_probe_it_waits_and_is_dropped() {
     assert_eq!(probes_of(&events)[1..], [(at(23.0), delayed.clone())]);
     assert!(refused(&mut engine, 24.0, requested()).contains("waiting"));
     let events = probes_of(&until(&mut engine, 30.0));
-    assert!(
-        matches!(events[..], [(time, ProbeEvent::Begun { origin: ProbeOrigin::Wizard, .. })] if time == at(30.0)),
-        "{events:?}"
-    );
-    check(&mut engine, &[(31.0, probe(ProbeEvent::Skipped { probe: 1, reason: "phone".to_string() }))]);
+    let is_begun =
+        matches!(events[..], [(time, ProbeEvent::Begun { origin: ProbeOrigin::Wizard, .. })] if time == at(30.0));
+    assert!(is_begun, "{events:?}");
+    check(&mut engine, &[(31.0, skipped("phone"))]);
     until(&mut engine, 35.0);
     let events = engine.input(at(36.0), requested()).events;
     assert_eq!(probes_of(&events)[1].1, ProbeEvent::Delayed { probe: 2, reason: ProbeDelayReason::Probe });
@@ -220,7 +213,7 @@ fn no_probe_begins_soon_after_a_signal_or_a_probe_it_waits_and_is_dropped() {
     assert_eq!(events, [(at(36.0), ProbeEvent::Dropped { probe: 1, reason: ProbeDelayReason::Signal })]);
     assert_eq!(engine.session().probes.dropped, [(1, ProbeDelayReason::Signal)]);
     check(&mut engine, &[(39.0, requested())]);
-    assert_eq!(engine.session().probes.open.as_ref().map(|open| open.number), Some(2), "numbers are not used again");
+    assert_eq!(open(&engine).map(|open| open.number), Some(2), "numbers are not used again");
 }
 
 #[test]
@@ -237,7 +230,7 @@ fn what_questions_teach_changes_the_estimate_of_the_locations_asked_about() {
         });
         check(&mut engine, &[(0.0, Event::TrialStarted), (30.0, requested())]);
         // The wizard skips all questions but the first.
-        check(&mut engine, &[(32.0, probe(ProbeEvent::Skipped { probe: 1, reason: "phone".to_string() }))]);
+        check(&mut engine, &[(32.0, skipped("phone"))]);
         until(&mut engine, 58.5);
         let over = &engine.session().probes.over[0];
         assert_eq!(over.shown, Some(0));
@@ -260,7 +253,7 @@ fn advice_that_comes_in_a_probe_is_requested_again_after_it() {
     let asked = engine.take_questions().pop().expect("the assistant is asked");
     let advice = engine.advisor().answer(&asked);
     assert!(refused(&mut engine, 11.0, Event::Advised(advice.clone())).contains("no trial runs"));
-    check(&mut engine, &[(12.0, probe(ProbeEvent::Skipped { probe: 1, reason: "phone".to_string() }))]);
+    check(&mut engine, &[(12.0, skipped("phone"))]);
     assert!(engine.take_questions().is_empty(), "the task stands still");
     until(&mut engine, 15.0);
     let again = engine.take_questions().into_iter().next().expect("it is asked again");

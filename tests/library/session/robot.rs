@@ -9,7 +9,7 @@ use tomcom_session::apply::silence_so_far;
 use tomcom_session::orders::OrderList;
 use tomcom_session::{apply, headless};
 
-use super::{at, check, engine, engine_of_trial, kitchen, press, refused};
+use super::{at, check, corrected, engine, engine_of_trial, kitchen, mark, press, refused};
 use crate::support::*;
 
 #[test]
@@ -28,17 +28,13 @@ fn by_wizard(event: fn(Sender) -> Event) -> Event {
     event(Sender::Wizard)
 }
 
-fn corrected(location: &str, content: &str) -> Event {
-    Event::KitchenCorrected { location: location.to_string(), content: content.to_string() }
-}
-
 fn driven(button: &str) -> Event {
     Event::RobotDriven { by: Sender::Wizard, button: button.to_string() }
 }
 
 /// Lets the session run on to this time; what happened until then, but for the silence of the human.
 fn run_on(engine: &mut SessionEngine, seconds: f64) -> Vec<(&'static str, f64)> {
-    let mut kinds = check(engine, &[(seconds, Event::Marker { note: String::new(), observer: None })]);
+    let mut kinds = check(engine, &[(seconds, mark())]);
     kinds.retain(|(kind, _)| *kind != "human_waits");
     kinds
 }
@@ -82,9 +78,8 @@ fn a_skipped_press_is_given_up_and_not_decided_for_again_at_once() {
         assert_eq!(intention(&lonely), Some(only));
     }
     check(&mut lonely, &[(6.0, Event::RobotStopped)]);
-    assert!(
-        refused(&mut lonely, 6.5, by_wizard(|by| Event::RobotSkipped { by })).contains("not on its way to a press")
-    );
+    let told = refused(&mut lonely, 6.5, by_wizard(|by| Event::RobotSkipped { by }));
+    assert!(told.contains("not on its way to a press"), "{told}");
 }
 
 #[test]
@@ -184,22 +179,13 @@ fn a_robot_whose_human_is_passive_serves_alone_within_40_s() {
         assert_eq!(reason, IdleReason::HumanTurn);
         let pot = engine.session().kitchen.button_named(Agent::Human, "cooking_pot").expect("a button");
         assert!(waits_for.contains(&pot), "the human could take the shrimp: {waits_for:?}");
-        let events = engine.input(at(40.0), Event::Marker { note: String::new(), observer: None }).events;
+        let events = engine.input(at(40.0), mark()).events;
         let served = *engine.session().served.first().expect("it serves an order");
         assert_eq!(engine.session().kitchen.dish(served.dish).name, "shrimp nigiri");
         let done = done(&events);
         assert!(["counter", "rolling_mat"].contains(&done[0].as_str()), "{done:?}");
-        let rest = [
-            "cooking_pot",
-            "cutting_board",
-            "cut",
-            "cutting_board",
-            "assembly_board",
-            "assembly_board",
-            "plate",
-            "serve 1",
-        ];
-        assert_eq!(done[1..9], rest, "{done:?}");
+        let rest = "cooking_pot cutting_board cut cutting_board assembly_board assembly_board plate serve";
+        assert_eq!(done[1..9].join(" "), format!("{rest} 1"), "{done:?}");
         assert_eq!(engine.session().robot.initiative_presses as usize, done.len(), "each by its own initiative");
     }
 }
@@ -251,13 +237,8 @@ fn needless(name: &str, population: Population, (trials, seconds): (u64, f64)) {
                 idle_s += passed_s;
                 let recipes = kitchen.true_recipes();
                 let is_passive = silence_so_far(&session, session.time) >= initiative;
-                let can = |cost: &mut CostToGo| {
-                    kitchen
-                        .orders
-                        .iter()
-                        .any(|&order| own_ways(&kitchen, cost, session.state, &recipes, order).is_some())
-                };
-                if passed_s > 0.0 && waits && is_passive && can(&mut cost) {
+                let can = |order: &LocationId| own_ways(&kitchen, &mut cost, session.state, &recipes, *order).is_some();
+                if passed_s > 0.0 && waits && is_passive && kitchen.orders.iter().any(can) {
                     needless_s += passed_s;
                 }
             }

@@ -13,7 +13,7 @@ use tomcom_session::{TimelineEntry, TimelineEvent};
 use tomcom_study::analysis::trial_summary::{RegretSum, order_times};
 
 use super::probes::on_request;
-use super::{at, check, engine, kitchen, press, refused};
+use super::{at, check, corrected, engine, kitchen, mark, press, refused};
 use crate::support::*;
 
 fn highlight(location: &str) -> Event {
@@ -25,7 +25,7 @@ fn a_trial_ends_after_its_time_and_pauses_do_not_count() {
     let mut engine = engine(|spec| spec.trial.seconds = 10.0);
     check(&mut engine, &[(1.0, Event::TrialStarted), (4.0, Event::TrialPaused), (9.0, Event::TrialResumed)]);
     assert_eq!(engine.session().trial_clock(at(10.0)), at(4.0));
-    let kinds = check(&mut engine, &[(30.0, Event::Marker { note: "later".to_string(), observer: None })]);
+    let kinds = check(&mut engine, &[(30.0, mark())]);
     assert!(kinds.contains(&("trial_ended", 16.0)), "{kinds:?}");
     assert_eq!(engine.session().phase, TrialPhase::Over(TrialEndReason::Time));
     assert_eq!(engine.next_due(), None);
@@ -60,7 +60,7 @@ fn a_pause_postpones_the_arm_the_orders_and_the_signal() {
         if pause_s > 0.0 {
             inputs.extend([(0.3, Event::TrialPaused), (0.3 + pause_s, Event::TrialResumed)]);
         }
-        inputs.push((10.0 + pause_s, Event::Marker { note: String::new(), observer: None }));
+        inputs.push((10.0 + pause_s, mark()));
         inputs
     };
     let run = |pause_s: f64| check(&mut engine(|_| ()), &inputs(pause_s));
@@ -103,12 +103,11 @@ fn a_served_order_is_shown_as_served_then_cleared_then_there_is_a_new_one() {
 }
 
 /// A press of the human that brings the orders nearer.
-fn helpful(kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Option<tomcom_core::kitchen::ButtonId> {
+fn helpful(kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Option<ButtonId> {
     let recipes = kitchen.true_recipes();
     let here = cost.all_orders(state, &recipes);
-    let buttons =
-        (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| tomcom_core::kitchen::ButtonId(index as u8));
-    buttons.into_iter().find(|&button| {
+    let mut buttons = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
+    buttons.find(|&button| {
         let next = kitchen.press(state, &recipes, Agent::Human, button);
         next.is_some_and(|next| cost.all_orders(next, &recipes) < here)
     })
@@ -192,8 +191,7 @@ fn judged(dishes: &[&str], presses: &[(Agent, &str)], after_s: f64) -> (JudgedPr
     let mut judge = PressJudge::new(kitchen.clone());
     let mut state = kitchen.empty_state();
     for (order, dish) in kitchen.orders.iter().zip(dishes) {
-        let dish = kitchen.dishes.iter().position(|known| known.name == *dish).expect("a dish of the menu");
-        state.set_order(*order, OrderContent::Dish(tomcom_core::kitchen::DishId(dish as u8)));
+        state.set_order(*order, OrderContent::Dish(kitchen.dish_named(dish).expect("a dish of the menu")));
     }
     let mut session = Session::new(kitchen.clone(), default_settings(), 0);
     let mut last = None;
@@ -277,9 +275,8 @@ fn what_is_there_counts_for_one_order_and_as_far_as_it_is() {
         state.set_order(*order, OrderContent::Dish(kitchen.dish_named(dish).expect("a dish")));
     }
     for (place, content) in [("plate", "nori"), ("counter", "tuna raw"), ("cooking_pot", "rice cooked")] {
-        let [place, content] =
-            [kitchen.location_named(place).map(|at| at.0), kitchen.content_named(content).map(|id| id.0)];
-        state.set_code(LocationId(place.expect("a place")), content.expect("a content"));
+        let place = kitchen.location_named(place).expect("a place");
+        state.set_code(place, kitchen.content_named(content).expect("a content").0);
     }
     let found = OrderWork::default().needs(&kitchen, state);
     let progress = |index: usize| found[index].items.iter().map(|needed| needed.progress).collect::<Vec<_>>();
@@ -402,22 +399,21 @@ fn errors_are_presses_that_lose_more_than_the_best_one() {
 /// The events of a session in which a freeze probe stands between a correction of the wizard and a press at its place.
 fn press_after_a_probe() -> (SessionEngine, Vec<TimestampedEvent>) {
     let mut engine = on_request(|_| ());
-    let corrected = Event::KitchenCorrected { location: "human_hand".to_string(), content: "nori".to_string() };
     let skipped = ProbeEvent::Skipped { probe: 1, reason: "phone".to_string() };
     let inputs = [
         (0.0, Event::TrialStarted),
-        (0.4, corrected),
+        (0.4, corrected("human_hand", "nori")),
         (0.5, Event::Probe(ProbeEvent::Requested)),
         (1.0, Event::Probe(skipped)),
         // The probe ends at 4 s, after its count down.
         (4.1, press("cut")),
     ];
-    let mut events = Vec::new();
-    for (seconds, event) in inputs {
-        let InputResult { events: new, refused } = engine.input(at(seconds), event.clone());
-        assert_eq!(refused, None, "{event:?}");
-        events.extend(new);
-    }
+    let events = inputs.into_iter().flat_map(|(seconds, event)| {
+        let InputResult { events, refused } = engine.input(at(seconds), event);
+        assert_eq!(refused, None);
+        events
+    });
+    let events = events.collect();
     (engine, events)
 }
 
@@ -430,11 +426,8 @@ fn a_freeze_probe_is_no_time_for_the_next_press_wherever_presses_are_judged() {
     let verdict = follower.judged.last().expect("a press").verdict;
     assert!(verdict.excess >= 1 && verdict.race && !verdict.error, "{verdict:?}");
     // The list of recordings judges by itself.
-    let files = session_file("default");
-    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("judged-after-a-probe");
-    let _ = fs::remove_dir_all(&out);
-    let header = LogHeader::new(spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
-    let mut log = LogWriter::create_live(&out, "2026-03-14", &header).expect("a recording");
+    let (files, out) = (session_file("default"), empty_folder("judged-after-a-probe"));
+    let (mut log, _) = live_recording(SessionSetup { spec: spec.clone(), ..files }, 0, &out);
     events.iter().for_each(|stamped| log.append(stamped).expect("written"));
     drop(log);
     let (listed, _) = list(&out, RecordingListDetail::WithErrors, |_| (), || ()).expect("a recording");

@@ -7,7 +7,7 @@ use tomcom_study::effect::LeftOutParticipant;
 use tomcom_study::mixed_models::{CountObservation, LinearMixedModel, MixedModelMeasurement, NegativeBinomialModel};
 use tomcom_study::trial_statistics::TrialStatistics;
 
-use super::trial;
+use super::in_arm;
 use crate::support::*;
 
 fn is_close(found: f64, wanted: f64, within: f64) {
@@ -145,16 +145,8 @@ fn simulated(arms: &[StudyArm], ratios: &[f64], participants: usize, seed: u64) 
             let rate = 0.12 * own * ratios[index] * 0.9_f64.powi(period as i32);
             let mean = rate * presses as f64 * runs.sample(&mut random);
             let errors = Poisson::new(mean).expect("a mean").sample(&mut random) as u64;
-            trials.push(TrialStatistics {
-                participant: format!("P{participant:02}"),
-                period: Some(period as u32 + 1),
-                study_arm: arms[index],
-                planned_arm: arms[index],
-                condition: arms[index].condition(),
-                human_presses: presses,
-                errors,
-                ..trial("", 1, Condition::None, 0)
-            });
+            let trial = in_arm(format!("P{participant:02}"), period as u32 + 1, arms[index], errors);
+            trials.push(TrialStatistics { human_presses: presses, ..trial });
         }
     }
     trials

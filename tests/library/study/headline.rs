@@ -6,9 +6,9 @@ use tomcom_session::questionnaire::AnswerValue;
 use tomcom_study::arm_comparison::ContrastVerdict;
 use tomcom_study::headline::{doubts, mixed_sources, primary_outcome};
 use tomcom_study::pass::describe;
-use tomcom_study::trial_statistics::{AskedItem, QuestionnaireAnswer, TrialStatistics};
+use tomcom_study::trial_statistics::{QuestionnaireAnswer, TrialStatistics};
 
-use super::{page, summary, trial, trials};
+use super::{answer, in_arm, page, summary, trials};
 use crate::support::*;
 
 #[test]
@@ -27,9 +27,29 @@ fn the_first_sentence_is_the_primary_outcome_and_says_no_more_than_its_interval(
         assert!(describe(&figures).contains(sentence) && page(&figures, trials).contains(sentence.as_str()));
     }
     let mut one = clear;
-    one.retain(|trial| trial.condition == Condition::None);
+    for trial in one.iter_mut().filter(|trial| trial.condition == Condition::Wizard) {
+        trial.left_out = Some("excluded: asleep".to_string());
+    }
     let told = primary_outcome(&summary(&one));
-    assert!(told[0].ends_with("unassisted 20.0; one condition, so nothing is compared."), "{told:?}");
+    let why = "unassisted 20.0; one condition, so nothing is compared: no trial of another one counts; left out: A0-2 (excluded: asleep)";
+    assert!(told[0].contains(why) && told[0].ends_with(", and 3 more."), "{told:?}");
+    one.retain(TrialStatistics::counts);
+    let told = primary_outcome(&summary(&one));
+    assert!(told[0].ends_with("nothing is compared: no trial of another one counts."), "{told:?}");
+}
+
+/// One participant's many errors weigh in the rates, not in the ratio.
+#[test]
+fn rates_and_ratio_that_point_two_ways_are_explained_beside_them() {
+    let trials = trials(&[[40, 30], [10, 12], [11, 13]], &[[30, 40], [12, 10], [13, 11]]);
+    let figures = summary(&trials);
+    let [sentence] = &primary_outcome(&figures)[..] else { panic!("one contrast") };
+    assert!(sentence.contains("wizard 9.2, unassisted 10.2; ratio 1.02"), "{sentence}");
+    assert!(
+        sentence.contains(". Of wizard to unassisted rates and ratio point two ways: the rates pool"),
+        "{sentence}"
+    );
+    assert!(describe(&figures).contains(sentence) && page(&figures, &trials).contains(sentence.as_str()));
 }
 
 /// Hardly an error: the model of logarithms sees half an error more in each trial, and the sentence says so.
@@ -75,15 +95,8 @@ fn several_contrasts_are_told_together_and_agree_with_their_intervals() {
                 (0..3_usize).map(move |period| {
                     let which = (period + person as usize) % 3;
                     let errors = rates[which] + (person * 7 + period as u64 * 5) % 9;
-                    let arm = arms[which];
-                    TrialStatistics {
-                        recording: format!("P{person:02}-{period}"),
-                        participant: format!("P{person:02}"),
-                        study_arm: arm,
-                        planned_arm: arm,
-                        condition: arm.condition(),
-                        ..trial("", period as u32 + 1, Condition::None, errors)
-                    }
+                    let trial = in_arm(format!("P{person:02}"), period as u32 + 1, arms[which], errors);
+                    TrialStatistics { recording: format!("P{person:02}-{period}"), ..trial }
                 })
             })
             .collect()
@@ -144,23 +157,8 @@ fn conditions_whose_causes_are_known_from_different_sources_are_not_compared_in_
 #[test]
 fn what_is_asked_before_the_trials_is_the_participants_whatever_becomes_of_the_trial() {
     let mut trials = trials(&[[20, 24]], &[[20, 21]]);
-    let asked = AskedItem {
-        questionnaire: "demographics".to_string(),
-        item: "age".to_string(),
-        text: "How old are you?".to_string(),
-        about: None,
-        reversed: false,
-        kind: QuestionnaireItemKind::Number,
-    };
-    let answer = |before| QuestionnaireAnswer {
-        asked: asked.clone(),
-        answer: Some(AnswerValue::Number(30)),
-        points: None,
-        options: Vec::new(),
-        share: None,
-        before,
-        score: None,
-    };
+    let age = || answer(QuestionnaireItemKind::Number, AnswerValue::Number(30));
+    let answer = |before| QuestionnaireAnswer { before, ..age() };
     trials[0].answers = vec![answer(true), answer(false)];
     let answers = |trials: &[TrialStatistics]| -> Vec<(bool, u64)> {
         let items = summary(trials).questionnaires;

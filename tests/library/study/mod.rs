@@ -14,13 +14,18 @@ mod tables;
 
 use tomcom_core::measures::raters::BeliefSource;
 use tomcom_core::measures::sequences::BeliefErrorCounts;
+use tomcom_session::plan::QuestionnaireItemKind;
+use tomcom_session::questionnaire::AnswerValue;
 use tomcom_study::analysis::offer_summary::OfferSummary;
-use tomcom_study::column::CsvTable;
+use tomcom_study::column::{CsvRow, CsvTable, TableCell};
 use tomcom_study::facts::RecordingFacts;
 use tomcom_study::figures::StudySummary;
+use tomcom_study::kept_cost::KeptCost;
+use tomcom_study::pass::reading::{self, AnalysisScope, RecordingAnalysis};
 use tomcom_study::robot_tally::RobotEventSummary;
 use tomcom_study::trial_statistics::{
-    DetailTotals, FalseBeliefErrors, SignalSenderWithParameter, TrialStatistics, arrange,
+    AskedItem, DetailTotals, FalseBeliefErrors, QuestionnaireAnswer, SignalSenderWithParameter, TrialStatistics,
+    arrange,
 };
 
 use crate::support::*;
@@ -93,6 +98,49 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
         stale_consensus: None,
         probes: None,
     }
+}
+
+/// A trial of the human in this arm, of 200 presses.
+fn in_arm(participant: String, period: u32, arm: StudyArm, errors: u64) -> TrialStatistics {
+    TrialStatistics { participant, study_arm: arm, planned_arm: arm, ..trial("", period, arm.condition(), errors) }
+}
+
+/// An answer after a trial.
+fn answer(kind: QuestionnaireItemKind, answer: AnswerValue) -> QuestionnaireAnswer {
+    QuestionnaireAnswer {
+        asked: AskedItem {
+            questionnaire: "sheet".to_string(),
+            item: "item".to_string(),
+            text: "What did you think?".to_string(),
+            about: None,
+            reversed: false,
+            kind,
+        },
+        answer: Some(answer),
+        points: None,
+        options: Vec::new(),
+        share: None,
+        before: false,
+        score: None,
+    }
+}
+
+/// The recording of a person, with errors, signals and gaze, in this empty folder.
+fn record_person(folder: &Path) {
+    fs::copy("tests/golden/format-3-hand.jsonl", folder.join("events.jsonl")).expect("a recording");
+}
+
+/// What this recording of a trial gives.
+fn read(folder: &Path, name: &str) -> RecordingAnalysis {
+    let scope = AnalysisScope { concepts: false, events: true };
+    let read = reading::read(folder, name, scope, None, &mut KeptCost::default()).expect("a recording");
+    read.expect("a trial").1
+}
+
+fn cell<'a, Row: CsvRow>(row: &'a Row, name: &str) -> TableCell<'a> {
+    let columns = Row::columns();
+    let column = columns.iter().find(|column| column.name == name).unwrap_or_else(|| panic!("no column {name}"));
+    column.cell(row)
 }
 
 /// The figures of these trials alone.

@@ -1,4 +1,4 @@
-//! Computation on numbers alone: the ascent to the best parameters, the surfaces of losses around them, differences, ticks, cells.
+//! Computation on numbers alone: the ascent to the best parameters, the surfaces of losses around them, ticks, cells.
 
 mod ascent {
     use rand::RngExt;
@@ -191,32 +191,6 @@ mod scores {
         assert!(ScoreRegression::new(&outside, &[0.9, -1.8], &[0.1, 0.2]).is_none());
         assert_eq!(designed(|_| None, &[0.9, -1.8], &[0.1, 0.2]), None);
         assert_eq!(designed(|at| Some(vec![f64::INFINITY, at[0]]), &[0.9, -1.8], &[0.1, 0.2]), None);
-    }
-}
-
-mod differences {
-    use rand::RngExt;
-    use tomcom_core::base::rng::stream;
-    use tomcom_core::measures::median;
-    use tomcom_study::statistics::PairwiseDifferences;
-
-    #[test]
-    fn the_order_is_that_of_the_sorted_list_of_all_differences() {
-        let mut random = stream(8106, "differences", 0);
-        for sizes in [[1, 1], [1, 4], [5, 4], [7, 12], [20, 20]] {
-            // Few distinct values, so that there are ties, also with 0.
-            let [a, b] = sizes.map(|size| (0..size).map(|_| f64::from(random.random_range(-3..4)) / 7.0).collect());
-            let (a, b): (Vec<f64>, Vec<f64>) = (a, b);
-            let mut all: Vec<f64> = a.iter().flat_map(|a| b.iter().map(move |b| a - b)).collect();
-            all.sort_by(f64::total_cmp);
-            let found = PairwiseDifferences::new(&a, &b);
-            assert_eq!(found.number(), all.len());
-            let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
-            let in_order: Vec<f64> = (0..all.len()).map(|index| found.nth(index)).collect();
-            assert_eq!(bits(&in_order), bits(&all), "{a:?} minus {b:?}");
-            assert_eq!(found.median().map(f64::to_bits), median(all).map(f64::to_bits));
-        }
-        assert_eq!(PairwiseDifferences::new(&[], &[1.0]).median(), None);
     }
 }
 

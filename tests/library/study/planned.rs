@@ -1,5 +1,6 @@
 //! The study against its plan: plans that were frozen before it, and trials that have no recording.
 
+use tomcom::run::plan::check_frozen;
 use tomcom_session::header::CodeCorrection;
 use tomcom_session::plan::listed;
 use tomcom_study::figures::CorrectedRecording;
@@ -236,6 +237,26 @@ fn what_changed_in_a_plan_since_a_recording_is_named() {
     assert!(changed(|now| now.spec.plan.as_mut().expect("a plan").block = Some(4)).contains("block, consent"));
 }
 
+#[test]
+fn a_frozen_plan_names_file_and_item_of_another_question() {
+    let (files, file) = (session_file("study"), empty_folder("study/frozen-question").join("study.frozen"));
+    let mut frozen = files.clone();
+    let item = &mut frozen.questionnaires[0].items[1];
+    let (id, now) = (item.id.clone(), item.text.clone());
+    item.text = "Another question".to_string();
+    let texts = [&*files.kitchen.layout.text, &*files.kitchen.recipes.text];
+    freeze(&file, &FrozenPlan::new(&frozen.study().expect("a plan"), texts, 0)).expect("frozen");
+    let session = Path::new("sessions/study.toml");
+    let error = check_frozen(session, &files, &file).expect_err("another question");
+    let path = "sessions/questionnaires/acceptance.toml";
+    let text = fs::read_to_string(path).expect("a questionnaire");
+    let line = text.lines().position(|line| line.contains(&now)).expect("a line") + 1;
+    let told = error.to_string();
+    assert!(told.starts_with(&format!("{path}:{line}: found questionnaire acceptance.item.{id}.text from ")), "{told}");
+    assert!(told.contains("\"Another question\" to "), "{told}");
+    assert!(error.remedy().starts_with("text = \"Another question\", as it was frozen in "), "{}", error.remedy());
+}
+
 /// Three conditions made of a plan that asks after its two trials: the last questionnaire would be lost without a word.
 #[test]
 fn a_plan_tells_what_it_does_not_ask_and_what_is_in_another_language() {
@@ -245,10 +266,12 @@ fn a_plan_tells_what_it_does_not_ask_and_what_is_in_another_language() {
     plan.conditions.push(StudyArm::TomCom);
     plan.questionnaire[0].after = Some(vec![1, 2]);
     files.spec.display.language = "fr".to_string();
+    files.spec.participant.kind = ParticipantKind::Keyboard;
     let remarks = files.study().expect("a plan").remarks();
     assert_eq!(remarks[0], "the questionnaire \"acceptance\" is asked after trial 1 and 2 of 3 trials only");
     assert!(
         remarks[1]
             .starts_with("the display's language is \"fr\", but not that of the questionnaire \"acceptance\" (en)")
     );
+    assert_eq!(remarks[2], "the tutorial is left out, since only the participant's display shows it");
 }

@@ -15,7 +15,7 @@ use tomcom_study::power::{
 use tomcom_study::tables::trials::HEADLINE;
 use tomcom_study::trial_statistics::TrialStatistics;
 
-use super::trial;
+use super::in_arm;
 use crate::support::*;
 
 const TWO: [StudyArm; 2] = [StudyArm::None, StudyArm::Wizard];
@@ -135,14 +135,8 @@ fn tests_of_a_drawn_study_are_those_of_the_analysis() {
     let trials: Vec<TrialStatistics> = study
         .iter()
         .map(|one| TrialStatistics {
-            participant: format!("P{:02}", one.participant),
-            period: Some(one.period),
-            study_arm: one.arm,
-            planned_arm: one.arm,
-            condition: one.arm.condition(),
             human_presses: one.presses,
-            errors: one.events,
-            ..trial("", 1, Condition::None, 0)
+            ..in_arm(format!("P{:02}", one.participant), one.period, one.arm, one.events)
         })
         .collect();
     let found = results(&tests(&TWO), &study);

@@ -60,7 +60,8 @@ fn counted(sent: &[HypotheticalSignal]) -> [u64; 5] {
 
 #[test]
 fn a_signal_prevents_the_later_errors_of_its_own_aspect_and_no_others() {
-    let silent = PreventionCounts { presses: 10, related: 4, outside: 5, ..PreventionCounts::default() };
+    let silent =
+        PreventionCounts { presses: 10, related: 4, outside: 5, harmless: Some(0), ..PreventionCounts::default() };
     assert_eq!(truth().count_signals(&[]), silent);
     // Before the first error all three of aspect 0, and not the one of aspect 1 in between.
     assert_eq!(counted(&[sent(2.6, &[0])]), [3, 0, 0, 0, 0]);

@@ -15,14 +15,13 @@ use tomcom_study::analysis::probe_record::{
     AspectAtFreeze, ProbeCollector, ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial,
     RecordedBeliefAtFreeze,
 };
-use tomcom_study::column::CsvRow;
 use tomcom_study::facts::RecordingFacts;
 use tomcom_study::report;
 use tomcom_study::tables::probe_table::{ProbeRow, probes};
 use tomcom_study::tables::trials::PROBES_WRONG;
 use tomcom_study::trial_statistics::{DetailTotals, TrialDetails};
 
-use super::{near, summary, trial, with_details};
+use super::{cell, near, summary, trial, with_details};
 use crate::support::*;
 
 /// An aspect of the synthetic kitchen at a probe.
@@ -360,11 +359,7 @@ fn probes_stand_in_tables_and_report() {
     }
     let rows: Vec<ProbeRow> = trials.iter().zip(&details).flat_map(|(trial, details)| probes(trial, details)).collect();
     assert_eq!(rows.len(), 36);
-    let value = |name: &str| {
-        let columns = ProbeRow::columns();
-        let column = columns.iter().find(|column| column.name == name).expect("the column exists");
-        serde_json::to_string(&column.cell(&rows[0])).unwrap()
-    };
+    let value = |name: &str| serde_json::to_string(&cell(&rows[0], name)).unwrap();
     assert_eq!(value("estimate_values"), "\"rice: 0.7000; empty: 0.2000; salmon: 0.1000\"");
     assert_eq!((value("weight").as_str(), value("in_main_results").as_str()), ("2.0", "true"));
     let answer = value("answer");

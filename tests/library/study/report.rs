@@ -8,19 +8,17 @@ use tomcom_session::plan::QuestionnaireItemKind;
 use tomcom_session::questionnaire::AnswerValue;
 use tomcom_study::analysis::offer_summary::TimedOffer;
 use tomcom_study::codes::CodedRecording;
-use tomcom_study::column::{CsvRow, CsvTable, TableCell};
+use tomcom_study::column::{CsvTable, TableCell};
 use tomcom_study::facts::RecordingFacts;
 use tomcom_study::figures::StudySummary;
-use tomcom_study::kept_cost::KeptCost;
 use tomcom_study::pass::describe;
-use tomcom_study::pass::reading::{self, AnalysisScope};
 use tomcom_study::prevention::PreventionCounts;
 use tomcom_study::report;
 use tomcom_study::robot_tally::{ArmSafetySummary, RobotEventTally};
 use tomcom_study::roc::ConceptPreventionCounts;
 use tomcom_study::trial_statistics::{AskedItem, DetailTotals, QuestionnaireAnswer, TrialDetails, TrialStatistics};
 
-use super::{at, near, summary, trial, trials, with_details};
+use super::{at, cell, near, read, record_person, summary, trial, trials, with_details};
 use crate::support::*;
 
 #[test]
@@ -29,21 +27,13 @@ fn the_report_says_who_took_part_and_needs_nothing_beside_it() {
     trials[3].left_out = Some("excluded: <b> & \"quoted\"".to_string());
     for (index, answer) in [Some(1), Some(3), None].into_iter().enumerate() {
         let assisted = trials.iter_mut().filter(|trial| trial.is_assisted() && trial.counts()).nth(index);
+        let given = super::answer(QuestionnaireItemKind::Scale, AnswerValue::Number(0));
         assisted.expect("a trial").answers.push(QuestionnaireAnswer {
-            asked: AskedItem {
-                questionnaire: "acceptance".to_string(),
-                item: "annoyed".to_string(),
-                text: "The signals annoyed me.".to_string(),
-                about: Some("acceptance".to_string()),
-                reversed: true,
-                kind: QuestionnaireItemKind::Scale,
-            },
+            asked: AskedItem { about: Some("acceptance".to_string()), reversed: true, ..given.asked.clone() },
             answer: answer.map(AnswerValue::from),
             points: Some(7),
-            options: Vec::new(),
             share: answer.map(|answer: u8| 1.0 - f64::from(answer - 1) / 6.0),
-            before: false,
-            score: None,
+            ..given
         });
     }
     let figures = summary(&trials);
@@ -125,8 +115,7 @@ fn what_the_robot_did_is_counted_while_the_trial_is_on() {
     assert_eq!(given_up, [Some(1), Some(1), Some(0)]);
     // A timed arm feels nothing: that is unknown, and not nought.
     let trial = TrialStatistics { robot: figures_of(ArmKind::Timed), ..trial("A0", 1, Condition::None, 4) };
-    let columns = TrialStatistics::columns();
-    let cell = |name: &str| columns.iter().find(|column| column.name == name).expect("a column").cell(&trial);
+    let cell = |name: &str| cell(&trial, name);
     for unknown in ["contacts", "peak_force_n", "reduced_s", "given_up_no_click"] {
         assert_eq!(cell(unknown), TableCell::Unknown, "{unknown}");
     }
@@ -174,13 +163,8 @@ fn methods_tell_how_trials_ended_with_which_arm_and_what_was_computed() {
 #[test]
 fn two_raters_say_why_people_erred() {
     let folder = empty_folder("study-raters");
-    fs::copy("tests/golden/format-3-hand.jsonl", folder.join("events.jsonl")).expect("a recording");
-    let extent = AnalysisScope { concepts: false, events: true };
-    let read = || match reading::read(&folder, "hand", extent, None, &mut KeptCost::default()) {
-        Ok(Some((_, reading))) => reading,
-        Ok(None) => panic!("it is no practice"),
-        Err(error) => panic!("{error}"),
-    };
+    record_person(&folder);
+    let read = || read(&folder, "hand");
     let basis = |trial: &TrialStatistics| trial.beliefs.as_ref().map(|beliefs| beliefs.basis);
     let estimated = read();
     assert_eq!(basis(&estimated.trial), Some(BeliefSource::Estimate));
@@ -251,14 +235,8 @@ fn what_was_offered_stands_beside_what_the_wizard_did() {
 #[test]
 fn the_consensus_of_two_raters_says_why_people_erred_until_one_changes_a_code() {
     let folder = empty_folder("study-consensus");
-    fs::copy("tests/golden/format-3-hand.jsonl", folder.join("events.jsonl")).expect("a recording");
-    let extent = AnalysisScope { concepts: false, events: true };
-    let read = || {
-        reading::read(&folder, "hand", extent, None, &mut KeptCost::default())
-            .expect("readable")
-            .expect("no practice")
-            .1
-    };
+    record_person(&folder);
+    let read = || read(&folder, "hand");
     let errors = CodedRecording::open(&folder).expect("a recording").codable.errors;
     let all = |code: ErrorCauseCode| RaterCodes(errors.iter().map(|press| (*press, code.clone())).collect());
     let (slips, beliefs) = (all(ErrorCauseCode::Slip), all(ErrorCauseCode::Belief("assembly_board".to_string())));

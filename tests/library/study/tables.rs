@@ -10,8 +10,7 @@ use tomcom_session::wall_display::DisplayEvent;
 use tomcom_study::column::{CsvRow, CsvTable, DataDictionaryRow, TableCell, TableColumn, described, dictionary};
 use tomcom_study::files::export::AnalysisFolder;
 use tomcom_study::frozen_plan::RecordedPlan;
-use tomcom_study::kept_cost::KeptCost;
-use tomcom_study::pass::reading::{self, AnalysisScope, RecordingAnalysis, WaivedPractice};
+use tomcom_study::pass::reading::{RecordingAnalysis, WaivedPractice};
 use tomcom_study::prevention::PreventionCounts;
 use tomcom_study::roc::ConceptPreventionCounts;
 use tomcom_study::study_part::AnalysedRecording;
@@ -20,9 +19,10 @@ use tomcom_study::tables::participants::{
     participants,
 };
 use tomcom_study::tables::trials::{HEADLINE, MEASURES};
-use tomcom_study::trial_statistics::{AskedItem, QuestionnaireAnswer, TrialDetails, TrialStatistics};
+use tomcom_study::trial_statistics::{TrialDetails, TrialStatistics};
 
 use super::probes::one_right_answer;
+use super::{answer, cell, read, record_person};
 use crate::support::*;
 
 /// The columns that other people's scripts may name. Columns are appended; none is renamed, moved or taken away.
@@ -82,12 +82,8 @@ fn folder(name: &str) -> PathBuf {
 /// What a recording of a person gives, with errors, signals and gaze.
 fn analysis(name: &str) -> RecordingAnalysis {
     let folder = folder(name);
-    fs::copy("tests/golden/format-3-hand.jsonl", folder.join("events.jsonl")).expect("a recording");
-    let (_, analysis) =
-        reading::read(&folder, "hand", AnalysisScope { concepts: false, events: true }, None, &mut KeptCost::default())
-            .expect("a recording")
-            .expect("a trial");
-    analysis
+    record_person(&folder);
+    read(&folder, "hand")
 }
 
 /// A loss counts for as long as the trial's clock goes: neither before the trial nor in a pause.
@@ -122,9 +118,7 @@ fn losses_of_the_display_are_counted_on_the_trials_clock() {
         outcome.events.iter().for_each(|stamped| log.append(stamped).expect("the log can be written"));
     }
     drop(log.flush());
-    let scope = AnalysisScope { concepts: false, events: true };
-    let read = reading::read(log.folder(), "lost", scope, None, &mut KeptCost::default()).expect("a recording");
-    let trial = read.expect("a trial").1.trial;
+    let trial = read(log.folder(), "lost").trial;
     assert_eq!(cell(&trial, "display_lost"), TableCell::from(2_u64));
     assert_eq!(cell(&trial, "display_lost_s"), TableCell::from(2.5_f64));
     assert_eq!(cell(&analysis("no-display").trial, "display_lost"), TableCell::Unknown, "no display");
@@ -155,12 +149,6 @@ fn pair() -> [TrialStatistics; 2] {
         ..second.clone()
     };
     [first, second]
-}
-
-fn cell<'a, Row: CsvRow>(row: &'a Row, name: &str) -> TableCell<'a> {
-    let columns = Row::columns();
-    let column = columns.iter().find(|column| column.name == name).unwrap_or_else(|| panic!("no column {name}"));
-    column.cell(row)
 }
 
 #[test]
@@ -240,22 +228,7 @@ fn fields(folder: &Path, table: CsvTable, column: &str) -> Vec<String> {
 
 /// No spreadsheet computes what a participant typed, and numbers stay numbers.
 fn check_guarded_texts(folder: &Path, export: &AnalysisFolder) {
-    let answer = |answer: AnswerValue| QuestionnaireAnswer {
-        asked: AskedItem {
-            questionnaire: "sheet".to_string(),
-            item: "words".to_string(),
-            text: "What did you think?".to_string(),
-            about: None,
-            reversed: false,
-            kind: QuestionnaireItemKind::Text,
-        },
-        answer: Some(answer),
-        points: None,
-        options: Vec::new(),
-        share: None,
-        before: false,
-        score: None,
-    };
+    let answer = |words| answer(QuestionnaireItemKind::Text, words);
     let typed = ["=HYPERLINK(\"http://lab\")", "+1 point", "-", "@all", "\tx", "= is fine inside =", "-0.5"];
     let mut answers: Vec<_> = typed.iter().map(|text| answer(AnswerValue::Text((*text).to_string()))).collect();
     answers.push(answer(AnswerValue::Number(-5)));
@@ -315,7 +288,7 @@ fn analysed_recordings_are_kept_in_files_until_all_are_read() {
     let RecordingAnalysis { trial, facts, .. } = analysis("kept-recording");
     let content = ComparedContent { kind: SignalKind::Highlight, target: Some(LocationId(3)) };
     let sent = CommunicationEvent { press: 7, clock: SessionTime(1_234_567_891), content };
-    let count = PreventionCounts { presses: 90, lead_ms: 1_001, harmless: None, ..PreventionCounts::default() };
+    let count = PreventionCounts { presses: 90, lead_ms: 1_001, ..PreventionCounts::default() };
     let details = TrialDetails {
         offers: Vec::new(),
         lanes: Some([vec![sent], Vec::new()]),

@@ -24,6 +24,8 @@ fn wrong_files_and_arguments_are_named_with_what_would_be_right() {
     assert!(complaint(&["simulate", "layouts/sushi.toml"]).contains("found a layout file"));
     complaint(&["simulate", "sessions/default.toml", "--trials", "0"]);
     complaint(&["simulate", "sessions/default.toml", "--arm", "both"]);
+    let told = complaint(&["export", "sessions", "--csv"]);
+    assert!(told.contains("tables (CSV) are written by 'tomcom study'") && !told.contains("similar"), "{told}");
     for moment in ["1:60", "-3", "1:2:3", "x", "nan", ":30"] {
         assert!(complaint(&["review", "nowhere", &format!("--at={moment}")]).contains(moment), "{moment}");
     }
@@ -42,6 +44,7 @@ fn wrong_files_and_arguments_are_named_with_what_would_be_right() {
     for (arguments, right) in [
         (&["power", "nowhere", "--sizes", "10;12"][..], "commas separate the values: --sizes 10,12\n"),
         (&["power", "nowhere", "--sizes", "ten"], "wanted a whole number from 4 to 1000\n"),
+        (&["simulate", "nowhere", "--trials=-3"], "wanted a whole number from 1 to 100000\n"),
         (&["power", "nowhere", "--sizes", "12,2"], "wanted a whole number from 4 to 1000\n"),
         (
             &["fit", "nowhere", "--parameters", "tau;half-life"],

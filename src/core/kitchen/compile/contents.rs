@@ -218,7 +218,7 @@ pub(super) fn content_words(spec: &RecipesSpec, items: &IngredientItems) -> Resu
         }
         check_distinct(spec, items, language, words)?;
     }
-    Ok(KitchenWords::new(languages))
+    Ok(KitchenWords(languages))
 }
 
 /// The default wording of an item: "cooked rice" for "rice" in the state "cooked".

@@ -30,26 +30,21 @@ impl Kitchen {
     pub fn from_toml(layout: &str, recipes: &str) -> Result<Kitchen> {
         let unreadable = |file: KitchenFileKind| {
             move |error: toml::de::Error| KitchenFileError {
-                file,
                 span: error.span(),
-                found: error.message().to_string(),
-                remedy: "a file like those in layouts and recipes".to_string(),
+                ..wrong_file(file, error.message(), "a file like those in layouts and recipes")
             }
         };
-        let ranges = files::check_layout(layout).map_err(|error| KitchenFileError {
-            file: KitchenFileKind::Layout,
+        let spec: LayoutSpec = toml::from_str(layout).map_err(unreadable(KitchenFileKind::Layout))?;
+        files::check_layout(layout).map_err(|error| KitchenFileError {
             span: error.place,
-            found: error.found,
-            remedy: error.remedy,
-        });
-        let layout: LayoutSpec = toml::from_str(layout).map_err(unreadable(KitchenFileKind::Layout))?;
-        ranges?;
+            ..wrong_file(KitchenFileKind::Layout, error.found, error.remedy)
+        })?;
         let recipes: RecipesSpec = toml::from_str(recipes).map_err(unreadable(KitchenFileKind::Recipes))?;
-        Kitchen::compile(&layout, &recipes)
+        Kitchen::compile(&spec, &recipes)
     }
 
-    /// Compiles a kitchen from parsed files. Errors name the file and the position, what was found, and what would be
-    /// right there.
+    /// Compiles a kitchen from parsed files, of which [`files::check_layout`] has checked the numbers. Errors name the
+    /// file and the position, what was found, and what would be right there.
     pub fn compile(layout: &LayoutSpec, recipes: &RecipesSpec) -> Result<Kitchen> {
         let items = IngredientItems::read(recipes)?;
         let mut contents = contents::contents(recipes, &items)?;
@@ -63,16 +58,7 @@ impl Kitchen {
         let orders: Vec<LocationId> = (0..layout.order.len()).map(|index| LocationId(index as u8)).collect();
         let buttons = places::buttons(layout, recipes, &items, &locations, &processes)?;
         let aspects = aspects(&contents, &locations, &dishes, &tables);
-        for (value, name) in [(&layout.display.width_m, "width_m"), (&layout.display.height_m, "height_m")] {
-            positive(value, name)?;
-        }
-        if !layout.table.height_m.is_finite() {
-            let found = format!("height_m = {}", layout.table.height_m);
-            return Err(wrong_file(KitchenFileKind::Layout, found, "the table's height in metres"));
-        }
-        positive(&layout.table.served_shown_s, "served_shown_s")?;
-        positive(&layout.table.new_order_after_s, "new_order_after_s")?;
-        let display_m = [*layout.display.width_m.get_ref(), *layout.display.height_m.get_ref()];
+        let display_m = [layout.display.width_m, layout.display.height_m];
         places::check_gaps(layout, &locations, display_m)?;
         places::check_signal_keys(layout)?;
         check_size(&locations, &tables, &buttons, &processes)?;
@@ -82,8 +68,8 @@ impl Kitchen {
             title: layout.title.clone(),
             display_m,
             table_height_m: layout.table.height_m,
-            served_shown_s: *layout.table.served_shown_s.get_ref(),
-            new_order_after_s: *layout.table.new_order_after_s.get_ref(),
+            served_shown_s: layout.table.served_shown_s,
+            new_order_after_s: layout.table.new_order_after_s,
             storages: places::storages(layout, recipes, &items)?,
             contents,
             words,
@@ -129,13 +115,6 @@ fn check_size(
         return too_large(format!("{} places of a process", stations.len()), format!("at most {MAX_STATIONS}"));
     }
     Ok(())
-}
-
-fn positive(value: &Spanned<f64>, name: &str) -> Result<()> {
-    if value.get_ref().is_finite() && *value.get_ref() > 0.0 {
-        return Ok(());
-    }
-    Err(in_layout(value.span(), format!("{name} = {}", value.get_ref()), "a number above 0"))
 }
 
 fn tables(

@@ -94,8 +94,7 @@ pub(super) fn check_gaps(layout: &LayoutSpec, locations: &[Location], display_m:
     let spans: Vec<_> = spans.chain(layout.place.iter().map(|place| place.display.span())).collect();
     for (index, location) in locations.iter().enumerate() {
         let area = location.display;
-        let inside = area.x >= 0.0 && area.y >= 0.0 && area.x + area.w <= 1.0 && area.y + area.h <= 1.0;
-        if !(inside && area.w > 0.0 && area.h > 0.0) {
+        if area.x + area.w > 1.0 || area.y + area.h > 1.0 {
             let found = format!("\"{}\" reaches beyond the display", location.name);
             return Err(in_layout(spans[index].clone(), found, "x, y, w and h as fractions within 0 to 1"));
         }
@@ -132,16 +131,11 @@ pub(super) fn storages(
     items: &IngredientItems,
 ) -> Result<Vec<IngredientStorage>> {
     let one = |storage: &StorageSpec| {
-        let DisplayArea { x, y, w, h } = *storage.display.get_ref();
-        if ![x, y, w, h].iter().all(|fraction| fraction.is_finite()) {
-            let found = format!("a storage of \"{}\" at no place", storage.ingredient.get_ref());
-            return Err(in_layout(storage.display.span(), found, "x, y, w and h as fractions within 0 to 1"));
-        }
         Ok(IngredientStorage {
             agent: storage.agent,
             item: stored(&storage.ingredient, spec, items)?,
             label: storage.ingredient.get_ref().clone(),
-            display: *storage.display.get_ref(),
+            display: storage.display,
         })
     };
     layout.storage.iter().map(one).collect()
@@ -157,13 +151,8 @@ pub(super) fn stored(name: &Spanned<String>, spec: &RecipesSpec, items: &Ingredi
     })
 }
 
-// Builds locations, storages and buttons from the layout file, and checks that an eye tracker can tell locations apart
-// on the display.
-
 /// Largest length of the name of an area of buttons on the table, in characters.
 const MAX_AREA: usize = 40;
-/// Largest number of a gamepad button; no gamepad or button box has more buttons.
-const MAX_GAMEPAD: u8 = 63;
 
 /// The buttons of both agents, each in the order: own storages, places, processing steps, own trash, orders.
 pub(super) fn buttons(
@@ -191,11 +180,8 @@ pub(super) fn buttons(
             let button = layout.process.iter().find(|button| *button.name.get_ref() == process.name);
             let Some(button) = button else {
                 let found = format!("no button for the process \"{}\" of the recipe file", process.name);
-                return Err(wrong_file(
-                    KitchenFileKind::Layout,
-                    found,
-                    "a table [[process]] with this name and a button",
-                ));
+                let remedy = "a table [[process]] with this name and a button";
+                return Err(wrong_file(KitchenFileKind::Layout, found, remedy));
             };
             list.push((process.name.clone(), ButtonAction::Process(index as u8), &button.button));
         }
@@ -223,10 +209,6 @@ fn button(agent: Agent, name: String, action: ButtonAction, spec: &ButtonSpec, o
         let found = format!("a second button \"{name}\" of the {}", agent.name());
         return Err(in_layout(spec.at_m.span(), found, "a name of its own for each button of an agent"));
     }
-    let at_m = *spec.at_m.get_ref();
-    if !at_m.iter().all(|metres| metres.is_finite()) {
-        return Err(in_layout(spec.at_m.span(), "a button at no place", "at_m = [x, y] in metres"));
-    }
     let key = match (agent, &spec.key) {
         (Agent::Robot, _) => None,
         (Agent::Human, None) => {
@@ -245,6 +227,7 @@ fn button(agent: Agent, name: String, action: ButtonAction, spec: &ButtonSpec, o
         }
     };
     let gamepad = gamepad(agent, &name, spec, others)?;
+    let at_m = *spec.at_m.get_ref();
     Ok(Button { name, action, at_m, key, gamepad, colour: spec.colour, area: area(spec)? })
 }
 
@@ -263,10 +246,8 @@ fn area(spec: &ButtonSpec) -> Result<Option<String>> {
 /// The checked number of the gamepad button; each number may be given to only one of the human's buttons.
 fn gamepad(agent: Agent, name: &str, spec: &ButtonSpec, others: &[Button]) -> Result<Option<u8>> {
     let Some(number) = spec.gamepad.as_ref().filter(|_| agent == Agent::Human) else { return Ok(None) };
-    let twin = others.iter().find(|other| other.gamepad == Some(*number.get_ref()));
-    if *number.get_ref() > MAX_GAMEPAD || twin.is_some() {
-        let whose = twin.map_or(String::new(), |other| format!(", which \"{}\" has already", other.name));
-        let found = format!("gamepad = {} for \"{name}\"{whose}", number.get_ref());
+    if let Some(other) = others.iter().find(|other| other.gamepad == Some(*number.get_ref())) {
+        let found = format!("gamepad = {} for \"{name}\", which \"{}\" has already", number.get_ref(), other.name);
         let remedy = "the number of a gamepad button, 0 to 63, each once";
         return Err(in_layout(number.span(), found, remedy));
     }

@@ -91,9 +91,9 @@ impl Assignment {
         useful: u32,
     ) {
         let complete = goal.complete[target];
-        if let Some(location) = self.nearest_complete(ground, state, goal.target_class[target], useful) {
-            self.push(target, complete, location as u8);
-            return;
+        let lying = ones(useful & !self.used).filter(|&location| state[location] == goal.target_class[target]);
+        if let Some(location) = lying.min_by_key(|&location| ground.last_presses(location)) {
+            return self.push(target, complete, location as u8);
         }
         let mut have = 0;
         let on_board = usize::from(state[ground.board]);
@@ -170,11 +170,6 @@ impl Assignment {
         }
     }
 
-    fn nearest_complete(&self, ground: &KitchenTables, state: &CompactState, class: u8, useful: u32) -> Option<usize> {
-        let complete = ones(useful & !self.used).filter(|&location| state[location] == class);
-        complete.min_by_key(|&location| ground.last_presses(location))
-    }
-
     /// Bit set of a target dish's items that have to be taken from a storage.
     pub fn stored(&self, target: usize) -> u8 {
         let tasks = self.tasks[..self.count].iter();
@@ -240,10 +235,8 @@ impl TaskRequirements {
 
     fn need(&mut self, needs: JourneyNeeds) {
         self.needs |= needs;
-        let mut stations = needs >> 2;
-        while stations != 0 {
-            self.station_needs[stations.trailing_zeros() as usize & 7] |= needs;
-            stations &= stations - 1;
+        for station in ones(u32::from(needs >> 2)) {
+            self.station_needs[station & 7] |= needs;
         }
     }
 

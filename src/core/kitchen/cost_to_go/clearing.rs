@@ -26,28 +26,10 @@ pub enum ClearingMove {
     Exchange { tasks: [usize; 2] },
 }
 
-/// A set of distinct moves that free a hand or a place.
-#[derive(Clone, Copy, Debug)]
-pub struct ClearingMoves {
-    all: [ClearingMove; MAX_MOVES],
-    count: usize,
-}
-
-impl ClearingMoves {
-    pub fn new() -> ClearingMoves {
-        ClearingMoves { all: [ClearingMove::Throw { hand: 0 }; MAX_MOVES], count: 0 }
-    }
-
-    /// Adds a move, unless the set contains it already or is full.
-    pub fn add(&mut self, other: ClearingMove) {
-        if self.count < MAX_MOVES && !self.all().contains(&other) {
-            self.all[self.count] = other;
-            self.count += 1;
-        }
-    }
-
-    pub fn all(&self) -> &[ClearingMove] {
-        &self.all[..self.count]
+/// Adds a move to those that free a hand or a place, unless they contain it already or are many.
+fn add(moves: &mut Vec<ClearingMove>, other: ClearingMove) {
+    if moves.len() < MAX_MOVES && !moves.contains(&other) {
+        moves.push(other);
     }
 }
 
@@ -310,8 +292,8 @@ impl PressPlan<'_> {
 
 impl PressPlan<'_> {
     /// All moves that can free the hands and places that the work on a target dish needs.
-    pub(super) fn moves(&self, wants: &RequiredFreePlaces) -> ClearingMoves {
-        let mut moves = ClearingMoves::new();
+    pub(super) fn moves(&self, wants: &RequiredFreePlaces) -> Vec<ClearingMove> {
+        let mut moves = Vec::with_capacity(MAX_MOVES);
         for agent in 0..2 {
             self.empty(wants, agent, &mut moves);
         }
@@ -324,22 +306,22 @@ impl PressPlan<'_> {
     }
 
     /// Adds the moves that empty the hand of an agent.
-    fn empty(&self, wants: &RequiredFreePlaces, agent: usize, moves: &mut ClearingMoves) {
+    fn empty(&self, wants: &RequiredFreePlaces, agent: usize, moves: &mut Vec<ClearingMove>) {
         let hand = self.ground.hands[agent];
         let wanted = wants.hand(agent);
         let Some((task, of)) = self.task_at(hand) else {
             if wanted && self.state[hand] != 0 {
-                moves.add(ClearingMove::Throw { hand });
+                add(moves, ClearingMove::Throw { hand });
             }
             return;
         };
         if let Some((detour, to)) = self.best_place(task, wants.needs, true)
             && (wanted || detour == 0)
         {
-            moves.add(ClearingMove::Bring { task, to });
+            add(moves, ClearingMove::Bring { task, to });
         }
         if of.bits.count_ones() == 1 && wanted {
-            moves.add(ClearingMove::Discard { task });
+            add(moves, ClearingMove::Discard { task });
         }
         if let Some(from) = self.blocked_by(task) {
             self.take_away(wants, from, moves);
@@ -347,28 +329,28 @@ impl PressPlan<'_> {
     }
 
     /// Adds the moves that empty a place of the kitchen.
-    fn take_away(&self, wants: &RequiredFreePlaces, from: usize, moves: &mut ClearingMoves) {
+    fn take_away(&self, wants: &RequiredFreePlaces, from: usize, moves: &mut Vec<ClearingMove>) {
         for hand in self.ground.hands.into_iter().filter(|&hand| self.state[hand] == 0) {
             let Some((task, _)) = self.task_at(from) else {
-                moves.add(ClearingMove::PickUp { from, hand });
+                add(moves, ClearingMove::PickUp { from, hand });
                 continue;
             };
-            moves.add(ClearingMove::Bring { task, to: hand });
+            add(moves, ClearingMove::Bring { task, to: hand });
             if let Some((_, to)) = self.best_place(task, wants.needs, true) {
-                moves.add(ClearingMove::Bring { task, to });
+                add(moves, ClearingMove::Bring { task, to });
             }
         }
     }
 
     /// Adds exchanges of items between two target dishes that need no additional presses.
-    fn exchange(&self, moves: &mut ClearingMoves) {
+    fn exchange(&self, moves: &mut Vec<ClearingMove>) {
         let movable = |task: &DeliveryTask| task.bits.count_ones() == 1 && task.at != STORAGE && !self.is_ready(task);
         let way = |task: &DeliveryTask, at: u8| self.goal.way(&self.state, task, at).0;
         for (one, a) in self.tasks().filter(|(_, task)| movable(task)) {
             for (other, b) in self.tasks().filter(|(_, task)| movable(task) && task.target > a.target) {
                 let fit = self.goal.fits(&self.state, &a, b.at) && self.goal.fits(&self.state, &b, a.at);
                 if fit && way(&a, b.at) + way(&b, a.at) <= way(&a, a.at) + way(&b, b.at) {
-                    moves.add(ClearingMove::Exchange { tasks: [one, other] });
+                    add(moves, ClearingMove::Exchange { tasks: [one, other] });
                 }
             }
         }
@@ -376,7 +358,7 @@ impl PressPlan<'_> {
 
     /// Adds moves that take an item from a storage early and put it on a free place on its way to the board, so that
     /// the hand is free later.
-    fn fetch(&self, moves: &mut ClearingMoves) {
+    fn fetch(&self, moves: &mut Vec<ClearingMove>) {
         let (ground, goal) = (self.ground, self.goal);
         for (task, of) in self.tasks().filter(|(_, task)| task.at == STORAGE) {
             let target = usize::from(of.target);
@@ -391,7 +373,7 @@ impl PressPlan<'_> {
                     };
                     for to in ground.places().filter(is_free) {
                         if at(hand) + 1 == fresh && at(to) + 2 == fresh {
-                            moves.add(ClearingMove::Fetch { task, class, hand, to });
+                            add(moves, ClearingMove::Fetch { task, class, hand, to });
                         }
                     }
                 }

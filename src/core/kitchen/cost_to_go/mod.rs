@@ -26,7 +26,7 @@ mod store;
 
 pub use proof::{ProofBudget, ProvenCost};
 pub(crate) use store::MAX_STATES;
-pub use store::{CostToGo, DecisionCosts, EvaluationCounts, MAX_BUTTONS};
+pub use store::{CostToGo, DecisionCosts, MAX_BUTTONS};
 
 /// How exactly a cost to go is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

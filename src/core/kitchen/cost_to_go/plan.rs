@@ -4,6 +4,7 @@
 use super::assign::{Assignment, TaskRequirements};
 use super::goal::{DeliveryTask, STORAGE, ServingGoal};
 use super::ground::{CompactState, FreeMask, KitchenTables, MAX_TARGETS, NEVER};
+use crate::base::maths::ones;
 
 /// Length, in presses, that stands for a plan that cannot be completed.
 pub const BLOCKED: u32 = 1000;
@@ -59,12 +60,7 @@ impl<'a> PressPlan<'a> {
 
     #[inline]
     pub(super) fn tasks(&self) -> impl Iterator<Item = (usize, DeliveryTask)> + '_ {
-        let mut open = self.open;
-        std::iter::from_fn(move || {
-            let index = open.trailing_zeros() as usize;
-            open &= open.wrapping_sub(1);
-            self.choice.tasks.get(index).map(|&task| (index, task))
-        })
+        ones(self.open).map(move |index| (index, self.choice.tasks[index]))
     }
 
     fn first_of(&self, target: usize) -> Option<(usize, DeliveryTask)> {
@@ -133,14 +129,11 @@ impl<'a> PressPlan<'a> {
             (Some(_), Some(_)) => (0..2).find(|&index| needs & (1 << index) == 0),
             _ => None,
         };
-        match hand {
-            Some(hand) => {
-                self.presses += 1;
-                self.relocate(index, ground.hands[hand]);
-                true
-            }
-            None => false,
+        if let Some(hand) = hand {
+            self.presses += 1;
+            self.relocate(index, ground.hands[hand]);
         }
+        hand.is_some()
     }
 
     pub(super) fn bring_part(&mut self, target: usize) -> bool {
@@ -289,7 +282,7 @@ impl PressPlan<'_> {
             }
             let wants = self.wants(target);
             if second_thought {
-                for &made in self.moves(&wants).all() {
+                for made in self.moves(&wants) {
                     let mut other = PressPlan { ..self };
                     other.make(made);
                     if other.is_over(limit) {
@@ -381,11 +374,6 @@ impl RankedAssignments {
         &self.choices[..self.count]
     }
 
-    /// The assignment of items with the smaller lower bound of the cost to go.
-    pub fn best_choice(&self) -> &Assignment {
-        &self.choices[0]
-    }
-
     /// Items that dishes which may be served first need from the storages: a bit set of items for each target dish.
     pub fn wanted(&self) -> [u8; MAX_TARGETS] {
         let mut wanted = [0; MAX_TARGETS];
@@ -396,22 +384,19 @@ impl RankedAssignments {
         wanted
     }
 
-    /// Length of the best plan in presses; [`BLOCKED`] if no plan ends within `most` presses.
-    pub fn upper(&self, ground: &KitchenTables, goal: &ServingGoal, state: &CompactState, most: u32) -> u32 {
-        self.best_plan(ground, goal, state, most, false)
-    }
-
     /// Length of the best plan in presses, where plans that do not reach the lower bound are tried again with one
     /// deviation (discrepancy) from the greedy choice.
     pub fn close_upper(&self, ground: &KitchenTables, goal: &ServingGoal, state: &CompactState) -> u32 {
-        let upper = self.upper(ground, goal, state, BLOCKED);
+        let upper = self.best_plan(ground, goal, state, BLOCKED, false);
         if upper <= self.lower {
             return upper;
         }
         upper.min(self.best_plan(ground, goal, state, upper - 1, true))
     }
 
-    fn best_plan(
+    /// Length of the best plan in presses; [`BLOCKED`] if no plan ends within `most` presses. With `second_thought`, each
+    /// plan may deviate once from the greedy choice.
+    pub fn best_plan(
         &self,
         ground: &KitchenTables,
         goal: &ServingGoal,

@@ -94,8 +94,8 @@ impl CostToGo {
         if targets.is_empty() {
             return known;
         }
-        let Some((slot, _)) = self.key_of_state(state, targets) else { return known };
-        let Some(goal) = self.goal(slot).cloned() else { return known };
+        let (slot, _) = self.key_of_state(state, targets);
+        let goal = self.goal(slot).clone();
         let classes = self.classes(&goal, state);
         if floor(&self.ground, &goal, &classes) >= presses {
             return known;
@@ -116,7 +116,7 @@ impl ProofSearch<'_> {
     ) -> ProvenCost {
         self.meet(slot, goal, start, 0);
         while let Some(next) = self.open.pop().filter(|next| next.bound.0 < self.best) {
-            let Some(goal) = self.costs.goal(next.slot).cloned() else { continue };
+            let goal = self.costs.goal(next.slot).clone();
             let key = self.costs.key(next.slot, &goal, &next.state);
             if self.seen.get(&key).is_some_and(|&least| least < next.presses) {
                 continue;
@@ -145,21 +145,12 @@ impl ProofSearch<'_> {
     }
 
     fn serve(&mut self, open: &Open, goal: &ServingGoal, target: usize) {
-        let rest = goal.targets.iter().enumerate().filter(|(index, _)| *index != target);
-        let rest: Vec<ContentId> = rest.map(|(_, &target)| target).collect();
-        if rest.is_empty() {
-            self.best = self.best.min(open.presses + 1);
-            return;
-        }
         let mut state = open.state;
         state[self.costs.ground.plate] = 0;
-        let slot = self.costs.slot(&rest);
-        let rest = self.costs.make_goal(slot, &rest).clone();
-        let mut classes: CompactState = [0; 16];
-        for location in self.costs.ground.places() {
-            classes[location] = rest.class_of[goal.content[usize::from(state[location])].index()];
+        match self.costs.without(goal, &state, target) {
+            Some((slot, rest, classes)) => self.meet(slot, &rest, &classes, open.presses + 1),
+            None => self.best = self.best.min(open.presses + 1),
         }
-        self.meet(slot, &rest, &classes, open.presses + 1);
     }
 
     fn meet(&mut self, slot: usize, goal: &ServingGoal, state: &CompactState, presses: u32) {

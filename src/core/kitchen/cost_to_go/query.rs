@@ -54,11 +54,8 @@ impl CostToGo {
         if targets.is_empty() {
             return 0;
         }
-        let Some((slot, key)) = self.key_of_state(state, targets) else { return UNREACHABLE };
-        if let Some(value) = self.known(fidelity, key) {
-            return value;
-        }
-        self.compute_for(fidelity, key, slot, state)
+        let (slot, key) = self.key_of_state(state, targets);
+        self.value_kept(fidelity, state, CacheSlot::At(slot, key))
     }
 
     pub(super) fn value_kept(&mut self, fidelity: Fidelity, state: State, kept: CacheSlot) -> u32 {
@@ -66,7 +63,7 @@ impl CostToGo {
             CacheSlot::At(slot, key) => {
                 self.known(fidelity, key).unwrap_or_else(|| self.compute_for(fidelity, key, slot, state))
             }
-            CacheSlot::Always(value) => value,
+            CacheSlot::Served => 0,
         }
     }
 
@@ -75,7 +72,7 @@ impl CostToGo {
     pub(super) fn bracket(&mut self, state: State, kept: CacheSlot, most: u32) -> (u32, Option<u32>) {
         let (slot, key) = match kept {
             CacheSlot::At(slot, key) => (slot, key),
-            CacheSlot::Always(value) => return (value, Some(value)),
+            CacheSlot::Served => return (0, Some(0)),
         };
         let known = self.known(Fidelity::LowerBound, key);
         if let Some(lower) = known {
@@ -86,7 +83,7 @@ impl CostToGo {
                 return (lower, Some(upper));
             }
         }
-        let Some(goal) = self.goal(slot).cloned() else { return (UNREACHABLE, None) };
+        let goal = self.goal(slot).clone();
         let classes = self.classes(&goal, state);
         let rating = RankedAssignments::new(&self.ground, &goal, &classes);
         let lower = known.unwrap_or_else(|| self.keep(Fidelity::LowerBound, key, rating.lower));
@@ -114,10 +111,10 @@ impl CostToGo {
 
     /// Whether a search finds a solution with fewer than `limit` presses.
     fn has_way(&mut self, slot: usize, state: State, lower: u32, limit: u32) -> bool {
-        let Some(goal) = self.goal(slot).cloned() else { return false };
+        let goal = self.goal(slot).clone();
         let classes = self.classes(&goal, state);
-        self.counts.searches += 1;
-        let mut finds = |reach| BestFirstSearch::finds(self, slot, &goal, &classes, limit, reach);
+        let mut finds =
+            |reach| BestFirstSearch::new(self, slot, &goal, limit, reach, true).run(&classes, limit - 1) < limit;
         let far = limit >= lower + goal.targets.len() as u32;
         finds(NEAR) || far && finds(FAR)
     }
@@ -187,13 +184,12 @@ impl CostToGo {
 
     /// An equivalent state in which each useless content is replaced by a representative with the same possible
     /// presses: the decisions are the same, and fewer distinct states have to be cached.
-    fn stand_in(&mut self, state: State, targets: &mut [ContentId]) -> State {
+    fn stand_in(&self, state: State, targets: &mut [ContentId]) -> State {
         targets.sort_unstable();
         if targets.is_empty() {
             return state;
         }
-        let slot = self.slot(targets);
-        let goal = self.make_goal(slot, targets);
+        let goal = self.goal(self.slot(targets));
         let mut alike = state;
         for location in self.ground.places() {
             let location = LocationId(location as u8);
@@ -210,11 +206,10 @@ impl CostToGo {
         recipes: &Recipes,
         agent: Agent,
     ) -> DecisionCosts {
-        self.counts.decisions_missed += 1;
+        self.decisions_missed += 1;
         let (here, after) = match fidelity {
-            Fidelity::Searched => self.each(Fidelity::Searched, state, recipes, agent),
             Fidelity::PlanBound => self.close(state, recipes, agent),
-            Fidelity::LowerBound => self.each(Fidelity::LowerBound, state, recipes, agent),
+            Fidelity::Searched | Fidelity::LowerBound => self.each(fidelity, state, recipes, agent),
         };
         let costs = DecisionCosts { here, after };
         self.decisions.set(state, question, &costs);
@@ -270,13 +265,13 @@ impl CostToGo {
             let kept = match (button.action, here) {
                 (ButtonAction::Serve(_), _) => self.kept(there, recipes),
                 (_, CacheSlot::At(slot, key)) => CacheSlot::At(slot, self.moved(slot, key, state, there)),
-                (_, CacheSlot::Always(value)) => CacheSlot::Always(value),
+                (_, CacheSlot::Served) => CacheSlot::Served,
             };
             nexts.push(SuccessorState { button: index, state: there, kept, bracket: (0, None) });
         }
         let keys = nexts.iter().filter_map(|next| match next.kept {
             CacheSlot::At(_, key) => Some(key),
-            CacheSlot::Always(_) => None,
+            CacheSlot::Served => None,
         });
         std::hint::black_box(keys.fold(0, |fetched, key| fetched ^ self.cache.fetch(key)));
         nexts
@@ -285,7 +280,7 @@ impl CostToGo {
     /// The cache key of a state, computed incrementally from the key of another state with the same orders.
     #[inline]
     fn moved(&self, slot: usize, key: u64, from: State, to: State) -> u64 {
-        let Some(goal) = self.goal(slot) else { return key };
+        let goal = self.goal(slot);
         let mut differs = from.bits() ^ to.bits();
         let mut moved = key;
         while differs != 0 {

@@ -13,8 +13,8 @@ use super::Fidelity;
 use super::goal::{ServingGoal, successors};
 use super::ground::CompactState;
 use super::plan::{BLOCKED, PressPlan, RankedAssignments};
-use super::store::{CostToGo, UNREACHABLE};
-use crate::kitchen::{ContentId, State};
+use super::store::CostToGo;
+use crate::kitchen::State;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SearchLimits {
@@ -68,32 +68,8 @@ pub struct BestFirstSearch<'a> {
 }
 
 impl<'a> BestFirstSearch<'a> {
-    /// Length of the best solution from `start`, or `best` if none is better; the search stops once `lower` is reached.
-    pub fn run(
-        costs: &'a mut CostToGo,
-        slot: usize,
-        goal: &'a ServingGoal,
-        start: &CompactState,
-        lower: u32,
-        best: u32,
-        reach: SearchLimits,
-    ) -> u32 {
-        BestFirstSearch::new(costs, slot, goal, best, reach, false).best(start, lower)
-    }
-
-    /// Whether a solution with fewer than `limit` presses exists from `start`, as far as the search finds one.
-    pub fn finds(
-        costs: &'a mut CostToGo,
-        slot: usize,
-        goal: &'a ServingGoal,
-        start: &CompactState,
-        limit: u32,
-        reach: SearchLimits,
-    ) -> bool {
-        BestFirstSearch::new(costs, slot, goal, limit, reach, true).best(start, limit - 1) < limit
-    }
-
-    fn new(
+    /// A search for a solution with fewer than `best` presses; with `any` it ends at the first one.
+    pub fn new(
         costs: &'a mut CostToGo,
         slot: usize,
         goal: &'a ServingGoal,
@@ -105,8 +81,8 @@ impl<'a> BestFirstSearch<'a> {
         BestFirstSearch { costs, slot, goal, best, open: BinaryHeap::new(), met: 0, seen, reach, any }
     }
 
-    /// Runs the search, which stops once a solution reaches `lower`; returns the best solution's length.
-    fn best(mut self, start: &CompactState, lower: u32) -> u32 {
+    /// Length of the best solution from `start`, or `best` if none is better; the search stops once `lower` is reached.
+    pub fn run(mut self, start: &CompactState, lower: u32) -> u32 {
         let rating = RankedAssignments::new(&self.costs.ground, self.goal, start);
         self.rate_plan(start, rating, 0, lower);
         // The presses that a plan settles first are nearly always right: therefore the start state itself is expanded
@@ -192,11 +168,11 @@ impl<'a> BestFirstSearch<'a> {
     /// Computes the plan of a state, from the state after all presses that are certainly optimal.
     fn rate_plan(&mut self, state: &CompactState, mut rating: RankedAssignments, presses: u32, bound: u32) {
         let goal = self.goal;
-        let plan = PressPlan::new(&self.costs.ground, goal, state, rating.best_choice());
+        let plan = PressPlan::new(&self.costs.ground, goal, state, &rating.choices()[0]);
         let (settling, settled, served) = plan.settle();
         let presses = presses + settling;
         if let Some(target) = served {
-            let value = self.costs.without(goal, &settled, target);
+            let value = self.costs.cost_without(goal, &settled, target);
             self.best = self.best.min(presses + value);
             return;
         }
@@ -211,7 +187,7 @@ impl<'a> BestFirstSearch<'a> {
             return;
         }
         let most = if self.any { self.best - presses - 1 } else { BLOCKED };
-        let upper = rating.upper(&self.costs.ground, goal, &settled, most);
+        let upper = rating.best_plan(&self.costs.ground, goal, &settled, most, false);
         self.best = self.best.min(presses + upper);
         if upper <= rating.lower {
             self.costs.cache.insert(key, upper);
@@ -224,7 +200,7 @@ impl<'a> BestFirstSearch<'a> {
 
 impl CostToGo {
     pub(super) fn compute_for(&mut self, fidelity: Fidelity, key: u64, slot: usize, state: State) -> u32 {
-        let Some(goal) = self.goal(slot).cloned() else { return UNREACHABLE };
+        let goal = self.goal(slot).clone();
         let classes = self.classes(&goal, state);
         self.compute(fidelity, key, slot, &goal, &classes)
     }
@@ -243,28 +219,19 @@ impl CostToGo {
         if upper <= rating.lower || fidelity == Fidelity::PlanBound && upper < BLOCKED {
             return upper;
         }
-        self.counts.searches += 1;
-        let best = BestFirstSearch::run(self, slot, goal, state, rating.lower, upper, NEAR);
+        let mut search =
+            |best, reach| BestFirstSearch::new(self, slot, goal, best, reach, false).run(state, rating.lower);
+        let best = search(upper, NEAR);
         // With two target dishes, a plan one press above the lower bound is common and mostly exact.
         match best < rating.lower + goal.targets.len() as u32 {
             true => best,
-            false => BestFirstSearch::run(self, slot, goal, state, rating.lower, best, FAR),
+            false => search(best, FAR),
         }
     }
 
     /// Cost to go of a state after one of its target dishes has been served.
-    fn without(&mut self, goal: &ServingGoal, state: &CompactState, served: usize) -> u32 {
-        let rest = goal.targets.iter().enumerate().filter(|(index, _)| *index != served);
-        let rest: Vec<ContentId> = rest.map(|(_, &target)| target).collect();
-        if rest.is_empty() {
-            return 0;
-        }
-        let slot = self.slot(&rest);
-        let rest = self.make_goal(slot, &rest).clone();
-        let mut classes: CompactState = [0; 16];
-        for location in self.ground.places() {
-            classes[location] = rest.class_of[goal.content[usize::from(state[location])].index()];
-        }
+    fn cost_without(&mut self, goal: &ServingGoal, state: &CompactState, served: usize) -> u32 {
+        let Some((slot, rest, classes)) = self.without(goal, state, served) else { return 0 };
         let key = self.key(slot, &rest, &classes);
         self.cache.get(key).unwrap_or_else(|| self.compute(Fidelity::Searched, key, slot, &rest, &classes))
     }

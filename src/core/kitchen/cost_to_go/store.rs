@@ -31,30 +31,18 @@ pub struct CostToGo {
     pub(super) decisions: Arc<DecisionCache>,
     /// Reused buffer for the successor states of a decision.
     pub(super) nexts: Vec<SuccessorState>,
-    pub(super) counts: EvaluationCounts,
+    /// Number of decisions that were in no cache.
+    pub(super) decisions_missed: u64,
     /// `[agent][content]`: whether an agent can take the content again after throwing it away.
     pub(super) takes: Arc<[Vec<bool>; 2]>,
     pub(super) trashes: [bool; 2],
 }
 
-/// Number of cache look-ups and computations since the start.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct EvaluationCounts {
-    /// Number of decisions that were not in the cache.
-    pub decisions_missed: u64,
-    /// Number of requests for the cost to go of a single state.
-    pub values: u64,
-    /// Number of values that had to be computed, because no cache held them.
-    pub(crate) values_missed: u64,
-    /// Number of values for which a search was needed, because bounds and plans differed.
-    pub searches: u64,
-}
-
 #[derive(Clone, Copy, Debug)]
 pub(super) enum CacheSlot {
     At(usize, u64),
-    /// No slot: the cost to go is constant, because there are no orders or an order cannot be served.
-    Always(u32),
+    /// No slot: without orders the cost to go is 0.
+    Served,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -80,7 +68,7 @@ impl CostToGo {
         CostToGo {
             takes: Agent::BOTH.map(takes).into(),
             trashes: Agent::BOTH.map(|agent| has(agent, ButtonAction::Trash)),
-            counts: EvaluationCounts::default(),
+            decisions_missed: 0,
             kitchen,
             ground: ground.into(),
             goals,
@@ -90,23 +78,19 @@ impl CostToGo {
         }
     }
 
-    /// Counters of cache look-ups and computations since the start.
-    pub fn counts(&self) -> EvaluationCounts {
-        self.counts
+    /// Number of decisions since the start that were in no cache.
+    pub fn decisions_missed(&self) -> u64 {
+        self.decisions_missed
     }
 
-    /// An evaluator for another thread, with the same caches and counters of its own.
+    /// An evaluator for another thread, with the same caches and a counter of its own.
     pub(crate) fn beside(&self) -> CostToGo {
-        CostToGo { counts: EvaluationCounts::default(), ..self.clone() }
+        CostToGo { decisions_missed: 0, ..self.clone() }
     }
 
-    /// Adds the counters of an evaluator that was used beside this one.
+    /// Adds what an evaluator counted that was used beside this one.
     pub(crate) fn add_counts(&mut self, of: &CostToGo) {
-        let EvaluationCounts { decisions_missed, values, values_missed, searches } = of.counts;
-        self.counts.decisions_missed += decisions_missed;
-        self.counts.values += values;
-        self.counts.values_missed += values_missed;
-        self.counts.searches += searches;
+        self.decisions_missed += of.decisions_missed;
     }
 
     /// The stacks (dishes) that the present orders want, in the order of the orders, and their number.
@@ -125,15 +109,33 @@ impl CostToGo {
 
     /// The cache slot of the target dishes (at least one) and the key of the state.
     #[inline]
-    pub(super) fn key_of_state(&mut self, state: State, targets: &mut [ContentId]) -> Option<(usize, u64)> {
+    pub(super) fn key_of_state(&self, state: State, targets: &mut [ContentId]) -> (usize, u64) {
         targets.sort_unstable();
         let slot = self.slot(targets);
-        let key = self.make_goal(slot, targets).key_of_state(state);
-        Some((slot, key << SLOT_BITS | (slot << KIND_BITS) as u64))
+        (slot, self.goal(slot).key_of_state(state) << SLOT_BITS | (slot << KIND_BITS) as u64)
     }
 
     pub(super) fn key(&self, slot: usize, goal: &ServingGoal, state: &CompactState) -> u64 {
         goal.key_of_classes(state) << SLOT_BITS | (slot << KIND_BITS) as u64
+    }
+
+    /// What is left of a goal and of a state, given by classes of contents, after one of the target dishes has been
+    /// served; `None` if nothing is left to be served.
+    pub(super) fn without(
+        &self,
+        goal: &ServingGoal,
+        state: &CompactState,
+        served: usize,
+    ) -> Option<(usize, Arc<ServingGoal>, CompactState)> {
+        let rest = goal.targets.iter().enumerate().filter(|(index, _)| *index != served);
+        let rest: Vec<ContentId> = rest.map(|(_, &target)| target).collect();
+        let slot = (!rest.is_empty()).then(|| self.slot(&rest))?;
+        let rest = self.goal(slot).clone();
+        let mut classes: CompactState = [0; 16];
+        for location in self.ground.places() {
+            classes[location] = rest.class_of[goal.content[usize::from(state[location])].index()];
+        }
+        Some((slot, rest, classes))
     }
 
     pub(super) fn slot(&self, targets: &[ContentId]) -> usize {
@@ -141,17 +143,15 @@ impl CostToGo {
         targets[0].index() * self.kitchen.contents.len() + second
     }
 
-    /// The goal of these target dishes, whose slot this is.
+    /// The goal of the target dishes with this slot.
     #[inline]
-    pub(super) fn make_goal(&self, slot: usize, targets: &[ContentId]) -> &Arc<ServingGoal> {
-        let make = || Arc::new(ServingGoal::new(&self.kitchen, &self.ground, targets.to_vec()));
-        self.goals[slot].get_or_init(make)
-    }
-
-    /// The goal of this slot, if it was asked for before.
-    #[inline]
-    pub(super) fn goal(&self, slot: usize) -> Option<&Arc<ServingGoal>> {
-        self.goals[slot].get()
+    pub(super) fn goal(&self, slot: usize) -> &Arc<ServingGoal> {
+        self.goals[slot].get_or_init(|| {
+            let contents = self.kitchen.contents.len();
+            let mut targets = vec![ContentId((slot / contents) as u8), ContentId((slot % contents) as u8)];
+            targets.retain(|target| !target.is_empty());
+            Arc::new(ServingGoal::new(&self.kitchen, &self.ground, targets))
+        })
     }
 
     pub(super) fn classes(&self, goal: &ServingGoal, state: State) -> CompactState {
@@ -163,34 +163,30 @@ impl CostToGo {
     }
 
     #[inline]
-    pub(super) fn known(&mut self, fidelity: Fidelity, key: u64) -> Option<u32> {
-        self.counts.values += 1;
+    pub(super) fn known(&self, fidelity: Fidelity, key: u64) -> Option<u32> {
         self.cache.get(key | fidelity as u64)
     }
 
     #[inline]
-    pub(super) fn keep(&mut self, fidelity: Fidelity, key: u64, value: u32) -> u32 {
-        self.counts.values_missed += 1;
+    pub(super) fn keep(&self, fidelity: Fidelity, key: u64, value: u32) -> u32 {
         let value = value.min(UNREACHABLE);
         self.cache.insert(key | fidelity as u64, value);
         value
     }
 
     #[inline]
-    pub(super) fn kept(&mut self, state: State, recipes: &Recipes) -> CacheSlot {
+    pub(super) fn kept(&self, state: State, recipes: &Recipes) -> CacheSlot {
         let (mut targets, count) = self.targets(state, recipes);
         self.kept_for(state, &mut targets[..count])
     }
 
     #[inline]
-    pub(super) fn kept_for(&mut self, state: State, targets: &mut [ContentId]) -> CacheSlot {
+    pub(super) fn kept_for(&self, state: State, targets: &mut [ContentId]) -> CacheSlot {
         if targets.is_empty() {
-            return CacheSlot::Always(0);
+            return CacheSlot::Served;
         }
-        match self.key_of_state(state, targets) {
-            Some((slot, key)) => CacheSlot::At(slot, key),
-            None => CacheSlot::Always(UNREACHABLE),
-        }
+        let (slot, key) = self.key_of_state(state, targets);
+        CacheSlot::At(slot, key)
     }
 }
 

@@ -2,7 +2,6 @@
 //! was effective.
 //!
 //! The belief is conditioned on effective or ineffective, then transformed by the kitchen's rules. Where one location
-//! The belief is conditioned on effective or ineffective, then transformed by the kitchen's rules. Where one location
 //! determines the effect, the update is exact: a Dirichlet restricted to some of its values is a Dirichlet with their
 //! alphas. Where hand and location ([`ExchangeUpdate`]) or plate, order and recipe ([`ServingUpdate`]) determine the effect
 //! jointly, only the probabilities of classes of contents that the rules treat alike are sampled; the distribution within a
@@ -354,7 +353,7 @@ fn add(moments: &mut [f64; 2], share: f64) {
     moments[1] += share * share;
 }
 
-/// Mean and second moment of a mixture of distributions, accumulated part by part.
+/// Mean and second moment of a mixture of distributions, or their change, accumulated part by part.
 struct Mixture {
     mean: Vec<f64>,
     second: f64,
@@ -368,6 +367,14 @@ impl Mixture {
     fn add_point(&mut self, value: usize, share: [f64; 2]) {
         self.mean[value] += share[0];
         self.second += share[1];
+    }
+
+    /// Adds the change from one distribution to another.
+    fn add_change(&mut self, before: &[f64], after: &[f64], weight: f64) {
+        for ((mean, now), then) in self.mean.iter_mut().zip(after).zip(before) {
+            *mean += weight * (now - then);
+        }
+        self.second += weight * (square(after) - square(before));
     }
 
     /// Adds to the mixture the distribution within one kind of the other side.
@@ -415,12 +422,6 @@ fn square(values: &[f64]) -> f64 {
     values.iter().map(|value| value * value).sum()
 }
 
-/// Change of the moments of one state aspect by conditioning, accumulated over draws.
-struct Tally {
-    mean: Vec<f64>,
-    second: f64,
-}
-
 impl ServingUpdate {
     pub fn new(kitchen: &Kitchen, order: LocationId) -> ServingUpdate {
         let (order, plate) = (AspectId::of_location(order), AspectId::of_location(kitchen.plate));
@@ -444,16 +445,14 @@ impl ServingUpdate {
         let aspects = [self.order, self.plate].into_iter().chain(dishes.iter().map(|dish| dish.recipe));
         let mut draw_of: Vec<Draw> =
             aspects.map(|aspect| Draw::from_dirichlet(belief.aspect(aspect), aspect)).collect();
-        for draw in &mut draw_of[1..2] {
-            // Contents of the plate that cannot be a dish form one class.
-            draw.lump(|value| !self.dishes.iter().any(|dish| dish.on_plate.contains(&Some(value))));
-        }
-        let mut tallies: Vec<Tally> = draw_of.iter().map(Draw::tally).collect();
+        // Contents of the plate that cannot be a dish form one class.
+        draw_of[1].lump(|value| !self.dishes.iter().any(|dish| dish.on_plate.contains(&Some(value))));
+        let mut tallies: Vec<Mixture> = draw_of.iter().map(|draw| Mixture::new(draw.means.len())).collect();
         for _ in 0..draws {
             draw_of.iter_mut().for_each(|draw| draw.again(random));
             let Some(after) = condition(&dishes, &draw_of, effective) else { continue };
             for ((tally, draw), after) in tallies.iter_mut().zip(&draw_of).zip(&after) {
-                tally.add(draw, after, 1.0 / draws as f64);
+                tally.add_change(&draw.now, after, 1.0 / draws as f64);
             }
         }
         for (tally, draw) in tallies.iter().zip(&draw_of) {
@@ -566,12 +565,8 @@ impl Draw {
         }
     }
 
-    fn tally(&self) -> Tally {
-        Tally { mean: vec![0.0; self.means.len()], second: 0.0 }
-    }
-
     /// The Dirichlet after adding the accumulated change of its moments.
-    fn changed(&self, before: &Dirichlet, tally: &Tally) -> Dirichlet {
+    fn changed(&self, before: &Dirichlet, tally: &Mixture) -> Dirichlet {
         let old = before.mean();
         let share = |value: usize| {
             let part = self.part_of[value];
@@ -579,15 +574,5 @@ impl Draw {
             old[value] + tally.mean[part] * inner
         };
         Dirichlet::of_moments((0..old.len()).map(share).collect(), before.second() + tally.second)
-    }
-}
-
-impl Tally {
-    /// Adds a draw whose conditioned belief is `after`.
-    fn add(&mut self, before: &Draw, after: &[f64], weight: f64) {
-        for ((mean, now), then) in self.mean.iter_mut().zip(after).zip(&before.now) {
-            *mean += weight * (now - then);
-        }
-        self.second += weight * (square(after) - square(&before.now));
     }
 }

@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
-use crate::kitchen::{AspectId, Kitchen, LocationId, State};
+use crate::kitchen::{Kitchen, LocationId, State};
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief, LEAST_MEAN, PRECISIONS};
 use crate::mind::model::{LocationReadingRate, PerceptionModel, PerceptionUnit};
 
@@ -116,9 +116,7 @@ impl GazeBeliefUpdate {
         taken: SessionTime,
         known_s: f64,
     ) {
-        // A point that is NaN is not on the display: these comparisons are false for NaN.
-        let on_display = (0.0..=1.0).contains(&sample.x) && (0.0..=1.0).contains(&sample.y);
-        let is_usable = on_display && known_s > 0.0;
+        let is_usable = sample.is_on_display() && known_s > 0.0;
         let Some(state) = self.shown_at(taken).filter(|_| is_usable) else { return };
         if let Some(samples) = &self.samples {
             return observe(kitchen, model, samples, belief, sample, state);
@@ -139,9 +137,8 @@ impl GazeBeliefUpdate {
             if read < NEGLIGIBLE {
                 continue;
             }
-            let aspect = AspectId(index as u8);
             let Some(value) = kitchen.aspects[index].index_of(code) else { continue };
-            belief.aspects[aspect.index()].learn(read, self.confusions[index][value].iter().copied());
+            belief.aspects[index].learn(read, self.confusions[index][value].iter().copied());
         }
     }
 }
@@ -194,10 +191,6 @@ const SIDE: f64 = 20.0;
 /// Least weight c(o | v), so that an observation which the human holds to be impossible leaves a proper belief.
 const LEAST_WEIGHT: f64 = 1e-9;
 
-/// A weight c(o | v) at the points of the trapezoidal rule: ln(1 + t w), and t w / (1 + t w).
-#[derive(Clone, Debug)]
-struct WeightAtPoints(Vec<[f64; 2]>);
-
 #[derive(Clone, Debug)]
 struct LocationObservations {
     /// `[s][o]`: probability c(o | s) of observing value o where value s is displayed.
@@ -209,7 +202,8 @@ struct LocationObservations {
 /// The update of beliefs by observations of single gaze samples.
 #[derive(Clone, Debug)]
 pub struct SampleObservations {
-    weights: Vec<WeightAtPoints>,
+    /// For each weight c(o | v), at the points of the trapezoidal rule: ln(1 + t w), and t w / (1 + t w).
+    weights: Vec<Vec<[f64; 2]>>,
     locations: Vec<LocationObservations>,
 }
 
@@ -246,9 +240,8 @@ impl SampleObservations {
         let [first, last] = [-PRECISIONS[1].ln() - SIDE, SIDE - least.ln()];
         let times: Vec<f64> =
             (0..=((last - first) / STEP).ceil() as usize).map(|point| (first + STEP * point as f64).exp()).collect();
-        let at_points = |weight: f64| {
-            WeightAtPoints(times.iter().map(|t| [(t * weight).ln_1p(), t * weight / (1.0 + t * weight)]).collect())
-        };
+        let at_points =
+            |weight: f64| times.iter().map(|t| [(t * weight).ln_1p(), t * weight / (1.0 + t * weight)]).collect();
         SampleObservations { weights: all.into_iter().map(at_points).collect(), locations }
     }
 
@@ -280,16 +273,16 @@ impl SampleObservations {
 
     fn integrate(&self, classes: &mut [ValueClass], precision: f64) {
         let used: Vec<usize> = (0..classes.len()).filter(|&index| classes[index].alpha > 0.0).collect();
-        let points = self.weights[used[0]].0.len();
+        let points = self.weights[used[0]].len();
         let height = |classes: &[ValueClass], point: usize| {
-            let exponents = used.iter().map(|&index| classes[index].alpha * self.weights[index].0[point][0]);
+            let exponents = used.iter().map(|&index| classes[index].alpha * self.weights[index][point][0]);
             STEP * (-exponents.sum::<f64>()).exp()
         };
         for point in 0..points {
             let height = height(classes, point);
             let mut is_over = true;
             for &index in &used {
-                let ratio = self.weights[index].0[point][1];
+                let ratio = self.weights[index][point][1];
                 let [first, second] = &mut classes[index].integrals;
                 let sums = [*first + height * ratio, *second + height * ratio * ratio];
                 is_over &= sums == [*first, *second];
@@ -303,7 +296,7 @@ impl SampleObservations {
         // Before the first point the integrands are proportional to t and t^2; after the last one to t^-precision.
         let after = height(classes, points - 1) / (precision * STEP).exp_m1();
         for &index in &used {
-            let ratio = self.weights[index].0[0][1];
+            let ratio = self.weights[index][0][1];
             let [first, second] = &mut classes[index].integrals;
             *first += STEP * ratio / STEP.exp_m1() + after;
             *second += STEP * ratio * ratio / (2.0 * STEP).exp_m1() + after;

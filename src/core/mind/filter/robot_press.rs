@@ -8,9 +8,7 @@
 use super::draws::PolyaUrn;
 use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
-use crate::kitchen::{
-    Agent, AspectId, AspectKind, Kitchen, LocationId, OrderContent, State, WeightedWorld, WeightedWorlds, World,
-};
+use crate::kitchen::{Agent, AspectId, AspectKind, Kitchen, LocationId, State, WeightedWorld, WeightedWorlds, World};
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use crate::robot::policy;
 
@@ -109,7 +107,7 @@ fn draw(kitchen: &Kitchen, belief: &DirichletBelief, draws: usize, random: &mut 
         for (world, &value) in worlds.iter_mut().zip(&values) {
             let is_open = match kitchen.aspects[index].kind {
                 AspectKind::Location(_) => true,
-                AspectKind::Recipe(dish) => is_wanted(kitchen, world.state, OrderContent::Dish(dish)),
+                AspectKind::Recipe(dish) => kitchen.wanted(world.state).any(|(_, wanted)| wanted == dish),
             };
             if is_open {
                 world.set_value(kitchen, AspectId(index as u8), usize::from(value));
@@ -125,8 +123,4 @@ fn draw(kitchen: &Kitchen, belief: &DirichletBelief, draws: usize, random: &mut 
         }
     }
     together
-}
-
-fn is_wanted(kitchen: &Kitchen, state: State, content: OrderContent) -> bool {
-    kitchen.orders.iter().any(|&order| state.order(order) == content)
 }

@@ -146,9 +146,7 @@ impl BeliefFilter {
     pub(super) fn read_signal_by_gaze(&mut self, sample: &GazeSample, taken: SessionTime, known_s: f64) {
         let Some(standing) = &self.signals.standing else { return };
         let HumanModel { perception, signal, .. } = &self.model;
-        // A point that is NaN is not on the display: these comparisons are false for NaN.
-        let on_display = (0.0..=1.0).contains(&sample.x) && (0.0..=1.0).contains(&sample.y);
-        if !on_display || taken < standing.since {
+        if !sample.is_on_display() || taken < standing.since {
             return;
         }
         let area = self.kitchen.location(standing.location).display;

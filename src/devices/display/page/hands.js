@@ -71,6 +71,7 @@ const Hands = (() => {
     const isHeld = event.repeat || down.has(event.code || event.key);
     down.add(event.code || event.key);
     const question = Stage.shown() && Stage.shown().question, focused = focusedButton(event.key);
+    if (!(event.target instanceof HTMLTextAreaElement)) Stage.useBadges("keys");
     // A button that was reached by the tab key is what the enter key presses.
     if (focused) {
       event.preventDefault();
@@ -93,7 +94,6 @@ const Hands = (() => {
     if (!button && lesson && (isHeld || Tutorial.refuse(event.key, lesson))) return undefined;
     if (!button) return isHeld || event.key.length > 1 || Stage.sayNothing(false);
     event.preventDefault();
-    Stage.useBadges("keys");
     learn(event, button);
     return isHeld || press(button.name, timeOf(event.timeStamp));
   }

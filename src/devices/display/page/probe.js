@@ -108,7 +108,7 @@ const Probe = (() => {
       // Orders stand as they do in the kitchen, not shuffled: their place is what they are known by.
       const orderOf = ({ shows }) => shows?.order ?? scene.locations.length, choices = [...probe.choices].sort((a, b) => orderOf(a) - orderOf(b));
       const head = element("div", "asks"), title = element("div", "title");
-      title.append(late, text("p", "count", words["probe count"].replace("#", probe.question).replace("#", probe.of)), text("h2", "", probe.text));
+      title.append(late, Questions.sign(text("p", "count", words["probe count"].replace("#", probe.question).replace("#", probe.of)), "← ↑ ↓ → ↵"), text("h2", "", probe.text));
       head.append(...(probe.about ? [subjectOf(probe.about, kit)] : []), title);
       const isCards = probe.choices.some(({ shows }) => shows && shows.recipe), list = element("div", isCards ? "choices cards" : "choices");
       list.append(...choices.map((choice) => choiceOf(choice, kit)));

@@ -35,16 +35,19 @@ const Questions = (() => {
     settle(question, sheet);
     const isConsent = question.form && question.form.kind === "consent";
     const card = element("div", isConsent ? "card question consents" : "card question");
-    card.append(text("h2", "", question.title));
+    const title = text("h2", "", question.title), kind = question.form?.kind;
+    card.append(title);
     if (isConsent) {
       card.append(...FORMS.consent(question, words, kit));
-      return sheet.replaceChildren(card);
+      sheet.replaceChildren(card);
+      const reading = card.querySelector(".reading");
+      return sign(title, reading.scrollHeight > reading.clientHeight && "↑ ↓");
     }
     if (question.item) {
       card.append(text("p", "count", `${question.number} / ${question.of}`), text("p", "item", question.text));
       if (question.form) card.append(...FORMS[question.form.kind](question, words, kit));
     } else {
-      card.append(text("p", "item done", question.text), text("p", "hint", words.review));
+      card.append(text("p", "item done", question.text), sign(text("p", "hint", words.review), "⇥ ↵"));
       const given = element("ol", question.given.length > 6 ? "given small" : "given");
       given.style.setProperty("--rows", Math.ceil(question.given.length / 2));
       for (const { item, text: asked, answer, form, point } of question.given) {
@@ -58,16 +61,16 @@ const Questions = (() => {
     }
     // Each button has its place, whatever others there are: a second touch of one never meets another.
     const row = element("div", "turns");
-    const button = (does, label, isOpen = true) => {
-      const made = text("button", does, label);
+    const button = (does, label, key, isOpen = true) => {
+      const made = sign(text("button", does, label), key);
       [made.dataset.does] = does.split(" ");
       opens(made, isOpen);
       row.append(made);
     };
-    if (question.before) button("back", words.back);
-    if (question.item) button(question.skipped ? "skip chosen" : "skip", words.skip);
-    if (question.item) button("next", words.next, question.skipped || isAnswered(question) || (isTyped(question) && pending(question)));
-    else button("confirm", words.confirm);
+    if (question.before) button("back", words.back, kind === "slider" ? "⌫" : kind !== "text" && "←");
+    if (question.item) button(question.skipped ? "skip chosen" : "skip", words.skip, ["scale", "choice"].includes(kind) ? "0" : skipKey(question, words));
+    if (question.item) button("next", words.next, "↵", question.skipped || isAnswered(question) || (isTyped(question) && pending(question)));
+    else button("confirm", words.confirm, "↵");
     card.append(row);
     sheet.replaceChildren(card);
     const field = card.querySelector("textarea");
@@ -94,6 +97,16 @@ const Questions = (() => {
     sheet.dataset.settles = "";
     setTimeout(() => { if (shownItem === now) delete sheet.dataset.settles; }, SETTLES_MS);
   }
+
+  /** Shows the key that does the same, if there is one, where keys are used. */
+  function sign(made, key) {
+    if (key) made.dataset.key = key;
+    else delete made.dataset.key;
+    return made;
+  }
+
+  /** The delete key leaves an item out, but not where it deletes typed text. */
+  const skipKey = (question, words) => (question.form?.kind === "text" && (pending(question) ?? question.answer) ? "" : words["key delete"]);
 
   /** Whether a button looks open; a closed one says what is missing. */
   function opens(made, isOpen) {
@@ -161,6 +174,7 @@ const Questions = (() => {
       field.addEventListener("input", () => {
         keep(question, field.value);
         opens(document.querySelector(".turns .next"), field.value);
+        sign(document.querySelector(".turns .skip"), skipKey(question, words));
         count();
       });
       hint.setAttribute("role", "alert");
@@ -171,7 +185,7 @@ const Questions = (() => {
       const reading = element("div", "reading");
       for (const paragraph of agreed.split(/\n\s*\n/)) reading.append(text("p", "", paragraph));
       const button = element("button", "hold");
-      button.append(element("i", ""), text("span", "", words.consent.replace("#", form.hold_s)));
+      button.append(element("i", ""), sign(text("span", "", words.consent.replace("#", form.hold_s)), "↵"));
       button.style.setProperty("--hold", `${form.hold_s}s`);
       button.dataset.seconds = form.hold_s;
       button.addEventListener("pointerdown", (event) => {
@@ -181,7 +195,7 @@ const Questions = (() => {
       for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
         button.addEventListener(end, () => hold("touch", false));
       }
-      const hint = text("p", "hint asks", words["consent text"]), not = text("button", "declines", words.decline);
+      const hint = text("p", "hint asks", words["consent text"]), not = sign(text("button", "declines", words.decline), words["key delete"]);
       not.addEventListener("click", () => {
         tell({ kind: "decline" });
         not.classList.add("chosen");
@@ -208,7 +222,7 @@ const Questions = (() => {
       slider.addEventListener("pointerdown", (event) => { slider.setPointerCapture(event.pointerId); drag(event); });
       slider.addEventListener("pointermove", (event) => slider.hasPointerCapture(event.pointerId) && drag(event));
       slider.addEventListener("pointerup", (event) => { drag(event); give(question, draft.value); });
-      const hint = kit.text("p", "hint", position(question) === null ? words.slider : "\u00a0");
+      const hint = sign(kit.text("p", "hint", position(question) === null ? words.slider : "\u00a0"), "← →");
       return [anchored(slider, form.low, form.high, kit), hint];
     },
   };
@@ -292,6 +306,7 @@ const Questions = (() => {
   /** A key is pressed while an item is shown; `isHeld`: the key has been down since before. */
   function key(name, question, isHeld) {
     const { form } = question, kind = question.item && form && form.kind;
+    if (kind === "consent" && name === "Delete") return isHeld || document.querySelector(".declines").click();
     if (kind === "consent") return ["Enter", " "].includes(name) ? holdBy("key", true, question) : read(name);
     const digit = /^[0-9]$/.test(name) ? Number(name) : null;
     const steps = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[name];
@@ -333,5 +348,5 @@ const Questions = (() => {
   /** The consent button counts as released, whatever holds it. */
   const letGo = () => hold(holds, false);
 
-  return { draw, key, touch, holdBy, letGo, begin: (toTell) => { tell = toTell; } };
+  return { draw, key, sign, touch, holdBy, letGo, begin: (toTell) => { tell = toTell; } };
 })();

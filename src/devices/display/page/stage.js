@@ -6,9 +6,9 @@ const Stage = (() => {
   const root = document.getElementById("stage");
   // Higher than wide by so much, the screen shows the layout of upright screens, which is between so wide and so wide for its height.
   const UPRIGHT = 1.2, NARROW = 0.42, WIDE = 1 / UPRIGHT;
-  // For so long at least it is said what the robot does, and what it has just done.
-  const SAYS_MS = 1000, TOLD_MS = 2500, says = { does: null, news: "", until: 0, timer: 0 };
-  let pad = null, told = null, scene = null, room = null, shown = null, parts = null, words = {}, timeLeft = () => 0;
+  // For so long at least it is said what the robot does, and what it has just done; it is slow once it was so for so long.
+  const SAYS_MS = 1000, TOLD_MS = 2500, SLOW_MS = 1000, says = { does: null, news: "", until: 0, slowFrom: Infinity, timer: 0 };
+  let pad = null, isKeyed = false, told = null, scene = null, room = null, shown = null, parts = null, words = {}, timeLeft = () => 0;
   let marks = { lost: false, ended: false, acts: true, free: false };
 
   function element(kind, className, inside = "") {
@@ -56,11 +56,19 @@ const Stage = (() => {
     for (const badge of root.querySelectorAll(".key:not(.cap)")) labelBadge(badge, scene.buttons.find(({ name }) => name === badge.dataset.of));
   }
 
-  /** The participant uses the keyboard, or the gamepad: badges show the buttons of that. */
+  /** The participant uses the keyboard, or the gamepad: badges show the buttons of that, and signs what keys do. */
   function useBadges(kind, standard) {
+    isKeyed = true;
+    markHands(kind);
     if (kind === (pad ? "pad" : "keys")) return;
     pad = kind === "pad" ? { standard } : null;
     label();
+  }
+
+  /** On a wall there are keys where there is a mouse; a screen in the hand has them once one is pressed. */
+  function markHands(kind = pad ? "pad" : "keys") {
+    root.classList.toggle("keyed", isKeyed || (!isUpright() && matchMedia("(hover: hover)").matches));
+    root.classList.toggle("padded", kind === "pad");
   }
 
   function knobOf(does, at) {
@@ -152,6 +160,7 @@ const Stage = (() => {
   function shape() {
     const [wide, high] = told ? told.display_m : [16, 9];
     root.classList.toggle("upright", isUpright());
+    markHands();
     root.style.setProperty("--wide", Upright.wideOf(uprightRatio()));
     root.style.setProperty("--ratio", isUpright() ? uprightRatio() : wide / high);
   }
@@ -177,7 +186,7 @@ const Stage = (() => {
     Sound.build(scene);
     const kitchen = element("div", "kitchen");
     const [theirs, mine] = room.sides(), robots = buildZone("robot", theirs, scene.words.robot);
-    Object.assign(says, { does: null, news: "", until: 0 });
+    Object.assign(says, { does: null, news: "", until: 0, slowFrom: Infinity });
     kitchen.append(robots, buildZone("human", mine, scene.words.human));
     kitchen.append(put(element("section", "zone table"), room.table()));
     const locations = scene.locations.map(buildLocation), storages = scene.storages.map(buildStorage);
@@ -338,19 +347,22 @@ const Stage = (() => {
   /** Says what the robot has just done, else what it does if it does not simply work; each for a while, but a stop at once. */
   function drawRobot() {
     clearTimeout(says.timer);
-    const state = (shown && shown.robot_does) || "", now = performance.now();
+    const now = performance.now(), isSlow = shown?.robot_does === "slow";
+    says.slowFrom = isSlow ? Math.min(says.slowFrom, now) : Infinity;
+    const slowAt = says.slowFrom + SLOW_MS, isBrief = isSlow && now < slowAt, state = (!isBrief && shown?.robot_does) || "";
     if (state === "stopped" || (says.does === says.news && says.until <= now)) says.news = "";
     const does = says.news || state;
     if (says.does !== does && (says.until <= now || says.news || state === "stopped")) {
       Object.assign(says, { does, until: now + (says.news ? TOLD_MS : SAYS_MS) });
       sayOfRobot(does);
     }
-    if (says.until > now) says.timer = setTimeout(drawRobot, says.until - now);
+    const next = Math.max(says.until, isBrief ? slowAt : 0);
+    if (next > now) says.timer = setTimeout(drawRobot, next - now);
   }
 
   /** What the buttons show of themselves: their keys, their gamepad's buttons, the colours of their caps, or nothing. */
   function badges() {
-    if (room.isUpright) return "";
+    if (room.isUpright && !isKeyed) return "";
     if (scene.keys && pad) return "pad";
     if (scene.keys && scene.buttons.some((knob) => knob.key)) return "keys";
     return scene.buttons.some((knob) => knob.colour) ? "colours" : "";

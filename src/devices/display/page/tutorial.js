@@ -199,15 +199,15 @@ const Tutorial = (() => {
   /** The buttons that turn the page; the one that goes on looks closed until the step is done. */
   function turnsOf(page, words, element, text) {
     const row = element("div", "row");
-    const button = (turn, label, isOpen) => {
-      const made = text("button", turn, label);
+    const button = (turn, label, key, isOpen) => {
+      const made = Questions.sign(text("button", turn, label), key);
       made.dataset.turn = turn;
       if (!isOpen) made.setAttribute("aria-disabled", "true");
       row.append(made);
     };
-    if (page.number > 1) button("back", words.back, true);
+    if (page.number > 1) button("back", words.back, "←", true);
     const onward = page.number === page.of ? words["tutorial end"] : words.next;
-    button("next", page.probe ? words["tutorial try"] : onward, isDone(page) || page.probe);
+    button("next", page.probe ? words["tutorial try"] : onward, "↵", isDone(page) || page.probe);
     return row;
   }
 

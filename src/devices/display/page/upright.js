@@ -7,9 +7,9 @@ const Upright = (wall, fontFamily, ratio) => {
   const WIDE = Upright.wideOf(ratio), BETWEEN = 0.8, EDGE = 0.8;
   // Height of a name above its place; sizes of names and words; least and most height of what is touched; height of orders, as a share of it;
   // height for recipes and texts on the least high stage, what they have more as such a share, and of a higher one as a share of what it has more.
-  const NAME = 2.1, WORDS = 1.6, TOUCH = [5.8, 12], ORDER = 1.35, TEXTS = [0.6, 1.6, 0.25];
+  const NAME = 2.1, WORDS = 1.6, TOUCH = [5.8, 12], ORDER = 1.35, TEXTS = [1.8, 1.4, 0.15];
   // Room below what is touched, height of the title of the robot's side, and width of the robot's hand beside something.
-  const INNER = 1.1, TITLE = 2.2, HAND = 6.2;
+  const INNER = 1.1, TITLE = 2.7, HAND = 6.2;
   // Width of a place, as a share of its height, of which names and buttons leave less; its least width; room beside it towards the middle, where the robot's hand stands;
   // room beside the words of a button, between buttons, and between a button and a place or its name, around which a frame can go.
   const FLAT = 1.4, PLACE = 9.6, ASIDE = 3.3, PAD = 1, APART = 0.5, FRAMED = 1.6;

@@ -112,10 +112,9 @@ fn observation(
     let is_filmed = !annotations.films.is_empty();
     let events: Vec<Value> = events
         .into_iter()
-        .map(|(time, subject, behaviour, words)| (time.ms() as f64 / 1e3, subject, behaviour, words))
-        .map(|(time_s, subject, behaviour, words)| match is_filmed {
-            true => json!([time_s, subject, behaviour, words, "", "NA"]),
-            false => json!([time_s, subject, behaviour, words, ""]),
+        .map(|(time, subject, behaviour, words)| match (time.ms() as f64 / 1e3, is_filmed) {
+            (time_s, true) => json!([time_s, subject, behaviour, words, "", "NA"]),
+            (time_s, false) => json!([time_s, subject, behaviour, words, ""]),
         })
         .collect();
     json!({

@@ -120,13 +120,7 @@ pub(super) struct EventCells {
 
 impl EventCells {
     /// `is_words`: whether the event is an answer in the participant's own words.
-    pub(super) fn from_event(event: &Event, is_words: bool) -> EventCells {
-        let mut cells = EventCells::default();
-        cells.take(event, is_words);
-        cells
-    }
-
-    fn take(&mut self, event: &Event, is_words: bool) {
+    pub(super) fn take(&mut self, event: &Event, is_words: bool) {
         if event.kind().starts_with("robot_") {
             self.agent = "robot".to_string();
         }
@@ -217,21 +211,15 @@ impl EventCells {
                 }
             }
             Event::External(event) => {
-                self.agent = "assistant".to_string();
+                (self.agent, self.what) = ("assistant".to_string(), tag(event, "what"));
                 match event {
-                    ExternalEvent::Began { name: own, .. } => {
-                        (self.what, self.answer) = ("began".to_string(), own.clone());
-                    }
-                    ExternalEvent::Believes { for_seq, .. } => {
-                        (self.what, self.refers_to) = ("believes".to_string(), Some(*for_seq));
-                    }
+                    ExternalEvent::Began { name: own, .. } => self.answer = own.clone(),
+                    ExternalEvent::Believes { for_seq, .. } => self.refers_to = Some(*for_seq),
                     ExternalEvent::Late { for_seq, answer, .. } => {
-                        (self.what, self.refers_to) = ("late".to_string(), Some(*for_seq));
-                        self.answer = answer.clone();
+                        (self.refers_to, self.answer) = (Some(*for_seq), answer.clone());
                     }
                     ExternalEvent::Fault { fault, found, .. } => {
-                        (self.what, self.item) = ("fault".to_string(), name(fault));
-                        self.reason = found.clone();
+                        (self.item, self.reason) = (name(fault), found.clone());
                     }
                 }
             }

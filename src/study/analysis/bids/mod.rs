@@ -13,7 +13,7 @@ use std::borrow::Cow;
 
 use serde_json::{Map, Value, json};
 
-use crate::column::{Levels, TableCell, TableColumn};
+use crate::column::{ColumnValues, Levels, TableCell, TableColumn};
 use tomcom_core::base::text::without_formula;
 use tomcom_core::base::time::SessionTime;
 
@@ -50,12 +50,12 @@ impl BidsFile {
 fn described<Row>(columns: &[TableColumn<Row>]) -> Map<String, Value> {
     let one = |column: &TableColumn<Row>| {
         let mut about = json!({ "Description": column.meaning });
-        if !column.unit.is_empty() {
-            about["Units"] = json!(column.unit);
+        let ColumnValues { unit, levels } = column.values;
+        if !unit.is_empty() {
+            about["Units"] = json!(unit);
         }
-        if !column.levels.is_empty() {
-            about["Levels"] =
-                column.levels.iter().map(|(value, meaning)| (value.to_string(), json!(meaning))).collect();
+        if !levels.is_empty() {
+            about["Levels"] = levels.iter().map(|(value, meaning)| (value.to_string(), json!(meaning))).collect();
         }
         (column.name.to_string(), about)
     };

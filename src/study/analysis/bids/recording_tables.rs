@@ -78,10 +78,8 @@ impl RecordingTables {
         self.eye_events.extend(eye_event);
         match &stamped.event {
             Event::Gaze(sample) => {
-                let (time, line) = (
-                    sample.taken_ns.unwrap_or(stamped.time),
-                    row(&gaze_columns(), &LoggedSample { logged: stamped, sample }),
-                );
+                let time = sample.taken_ns.unwrap_or(stamped.time);
+                let line = row(&gaze_columns(), &LoggedSample { logged: stamped, sample });
                 return self.long.push(LongTableRow { table: LongTable::Gaze, time, line });
             }
             Event::RobotMoves(sample) => {
@@ -101,7 +99,8 @@ impl RecordingTables {
         for (row, lasted) in over {
             self.rows[row].duration = Some(lasted);
         }
-        let mut cells = EventCells::from_event(&stamped.event, is_words(&stamped.event, session));
+        let mut cells = EventCells::default();
+        cells.take(&stamped.event, is_words(&stamped.event, session));
         if let Event::Probe(ProbeEvent::Asked { question, .. } | ProbeEvent::Answered { question, .. }) = &stamped.event
             && let Some(open) = &session.probes.open
             && let Some(asked) = (*question as usize).checked_sub(1).and_then(|index| open.questions.get(index))
@@ -278,20 +277,21 @@ fn is_words(event: &Event, session: &Session) -> bool {
     matches!(form, Some(AnswerFormat::Text { .. }))
 }
 
+/// Spans of time; those up to `Probe` end with the trial.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Span {
     Trial,
     Pause,
-    Phase,
     Order(String),
     RobotPress,
     RobotIdle,
     RobotStop,
     RobotHold,
-    Safety,
     Signal,
     Offer,
     Probe,
+    Phase,
+    Safety,
     Target,
     TrackerLoss,
     DisplayUnseen,
@@ -307,7 +307,7 @@ impl OpenSpans {
     /// Notes an event that stands in row `row` of the table: returns the event's duration so far (`None` for a span
     /// that goes on), and the spans that the event ends, each as the row of the event that began the span and its
     /// duration.
-    pub(super) fn note(
+    fn note(
         &mut self,
         row: usize,
         time: SessionTime,
@@ -316,7 +316,7 @@ impl OpenSpans {
         let (begins, ends) = (begun_span(event), ended_spans(event));
         let is_over = |span: &Span| match event {
             Event::SessionEnded => true,
-            Event::TrialEnded { .. } | Event::TrialAborted { .. } => is_of_trial(span),
+            Event::TrialEnded { .. } | Event::TrialAborted { .. } => *span <= Span::Probe,
             _ => ends.contains(span) || begins.as_ref() == Some(span),
         };
         let over: Vec<(usize, SessionTime)> =
@@ -330,22 +330,6 @@ impl OpenSpans {
             None => (Some(SessionTime::ZERO), over),
         }
     }
-}
-
-fn is_of_trial(span: &Span) -> bool {
-    matches!(
-        span,
-        Span::Trial
-            | Span::Pause
-            | Span::Order(_)
-            | Span::RobotPress
-            | Span::RobotIdle
-            | Span::RobotStop
-            | Span::RobotHold
-            | Span::Signal
-            | Span::Offer
-            | Span::Probe
-    )
 }
 
 fn begun_span(event: &Event) -> Option<Span> {
@@ -427,8 +411,9 @@ fn belief_columns<'a>() -> Vec<TableColumn<BeliefRow<'a>>> {
 }
 
 fn belief_rows(stamped: &TimestampedEvent) -> Vec<LongTableRow> {
-    let seq = stamped.seq;
-    let rows: Vec<BeliefRow> = match &stamped.event {
+    let (seq, columns) = (stamped.seq, belief_columns());
+    let line = |one| LongTableRow { table: LongTable::Beliefs, time: stamped.time, line: row(&columns, &one) };
+    match &stamped.event {
         Event::ParticipantBelieves(belief) => {
             let about = belief.aspects.iter().map(|one| BeliefRow {
                 seq,
@@ -439,7 +424,7 @@ fn belief_rows(stamped: &TimestampedEvent) -> Vec<LongTableRow> {
                 p_truth: one.p_truth,
                 precision: None,
             });
-            about.collect()
+            about.map(line).collect()
         }
         Event::BeliefEstimated(estimate) => {
             let about = estimate.aspects.iter().map(|one| BeliefRow {
@@ -451,13 +436,10 @@ fn belief_rows(stamped: &TimestampedEvent) -> Vec<LongTableRow> {
                 p_truth: one.p_truth,
                 precision: Some(one.precision),
             });
-            about.collect()
+            about.map(line).collect()
         }
-        _ => return Vec::new(),
-    };
-    let columns = belief_columns();
-    let line = |one| LongTableRow { table: LongTable::Beliefs, time: stamped.time, line: row(&columns, one) };
-    rows.iter().map(line).collect()
+        _ => Vec::new(),
+    }
 }
 
 /// Intervals between samples that are longer than this count as gaps and are left out of the sampling rate, in seconds.

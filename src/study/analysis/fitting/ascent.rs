@@ -124,7 +124,7 @@ impl<F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'_, F> {
 
     fn hold(&mut self, ends: Vec<(usize, BoundReached)>, held: &mut [Option<BoundReached>]) {
         for (index, end) in ends {
-            self.at[index] = self.bound(index, end);
+            self.at[index] = self.bounds[index][end as usize];
             held[index] = Some(end);
         }
     }
@@ -233,20 +233,20 @@ impl SurfaceSource {
 
 struct SurfaceSearch<'a, F> {
     losses: F,
-    pub(super) bounds: &'a [[f64; 2]],
+    bounds: &'a [[f64; 2]],
     tried: Vec<(Vec<f64>, Vec<f64>)>,
     /// The current point: where the latest surface, or half a step to it, has led.
-    pub(super) at: Vec<f64>,
+    at: Vec<f64>,
     centre: Vec<f64>,
-    pub(super) steps: Vec<f64>,
-    pub(super) evaluations: usize,
+    steps: Vec<f64>,
+    evaluations: usize,
     most: usize,
 }
 
 impl<'a, F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'a, F> {
     /// A search from `start`, which is moved inside the bounds, with about `most` evaluations of `losses`: the
     /// negative log likelihood of each press in nats.
-    pub(super) fn begin(losses: F, start: &[f64], bounds: &'a [[f64; 2]], most: usize) -> SurfaceSearch<'a, F> {
+    fn begin(losses: F, start: &[f64], bounds: &'a [[f64; 2]], most: usize) -> SurfaceSearch<'a, F> {
         let inside = |(at, [low, high]): (&f64, &[f64; 2])| at.clamp(*low, *high);
         let at: Vec<f64> = start.iter().zip(bounds).map(inside).collect();
         SurfaceSearch {
@@ -262,7 +262,7 @@ impl<'a, F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'a, F> {
     }
 
     /// The surface around the maximum (`Some(None)` without free variables); `None` if it did not converge.
-    pub(super) fn climb(&mut self, source: SurfaceSource, free: &[usize]) -> Option<Option<QuadraticSurface>> {
+    fn climb(&mut self, source: SurfaceSource, free: &[usize]) -> Option<Option<QuadraticSurface>> {
         if free.is_empty() {
             return Some(None);
         }
@@ -304,7 +304,7 @@ impl<'a, F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'a, F> {
     }
 
     /// Returns the surface, and how far it led, in steps; `None` if too few evaluations are left.
-    pub(super) fn step(&mut self, source: SurfaceSource, free: &[usize]) -> Option<(QuadraticSurface, Vec<f64>)> {
+    fn step(&mut self, source: SurfaceSource, free: &[usize]) -> Option<(QuadraticSurface, Vec<f64>)> {
         let (centre, surface) = self.survey(source, free)?;
         let by = self.least(free, &centre, &surface);
         for ((&index, centre), by) in free.iter().zip(&centre).zip(&by) {
@@ -331,9 +331,9 @@ impl<'a, F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'a, F> {
         self.centre = self.with(free, &centre);
         let surface = match source {
             SurfaceSource::Scores => {
-                score_surface::points_around(&centre, &steps).iter().for_each(|at| {
-                    self.try_point(free, at);
-                });
+                for at in score_surface::points_around(&centre, &steps) {
+                    self.try_point(free, &at);
+                }
                 ScoreRegression::new(&self.tried_with(free), &centre, &steps).map(|regression| regression.surface())
             }
             SurfaceSource::Values => response_surface::surface(|at| self.try_point(free, at), &centre, &steps),
@@ -342,7 +342,7 @@ impl<'a, F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'a, F> {
     }
 
     /// Covariance of the log likelihood's slope around the centre of the latest surface, per step of each free variable.
-    pub(super) fn score_products(&self, free: &[usize]) -> Option<DMatrix<f64>> {
+    fn score_products(&self, free: &[usize]) -> Option<DMatrix<f64>> {
         let [centre, steps] = [&self.centre, &self.steps].map(|of| free.iter().map(|&index| of[index]).collect());
         let [centre, steps]: [Vec<f64>; 2] = [centre, steps];
         ScoreRegression::new(&self.tried_with(free), &centre, &steps).map(|regression| regression.score_products())
@@ -414,16 +414,12 @@ impl<'a, F: FnMut(&[f64]) -> Option<Vec<f64>>> SurfaceSearch<'a, F> {
         }
     }
 
-    pub(super) fn ends(&self, free: &[usize]) -> Vec<(usize, BoundReached)> {
+    fn ends(&self, free: &[usize]) -> Vec<(usize, BoundReached)> {
         free.iter().filter_map(|&index| Some((index, self.end(index)?))).collect()
     }
 
-    pub(super) fn bound(&self, index: usize, end: BoundReached) -> f64 {
-        self.bounds[index][end as usize]
-    }
-
     /// Loss at the current point, in nats; infinite without a likelihood.
-    pub(super) fn loss(&mut self) -> f64 {
+    fn loss(&mut self) -> f64 {
         self.try_point(&[], &[])
     }
 }

@@ -172,15 +172,22 @@ pub fn fit(
     tried: impl Fn(),
 ) -> FitSummary {
     let begin = plan.start.as_ref().unwrap_or(trials.model);
-    let with = |at: &[f64]| model_at(begin, &plan.parameters, at);
+    // `at`: on the unbounded scale of the fit; other parameters as they begin.
+    let with = |at: &[f64]| {
+        let mut model = begin.clone();
+        let both = plan.parameters.iter().zip(at);
+        both.for_each(|(parameter, &scaled)| parameter.set(&mut model, parameter.from_scale(scaled)));
+        model
+    };
     let losses = |at: &[f64]| {
         let model = with(at);
-        let losses = is_possible(&model).then(|| likelihood(&model).losses());
+        let is_possible = ranges::check_human_model(&model).is_ok() && model.fault().is_none();
+        let losses = is_possible.then(|| likelihood(&model).losses());
         tried();
         losses
     };
-    let start = point_of(begin, &plan.parameters);
-    let bounds = bounds_of(&plan.parameters);
+    let start: Vec<f64> = plan.parameters.iter().map(|one| one.to_scale(one.get(begin))).collect();
+    let bounds: Vec<[f64; 2]> = plan.parameters.iter().map(|one| one.bounds().map(|end| one.to_scale(end))).collect();
     let before = likelihood(begin);
     let LikelihoodMaximum { mut variables, evaluations, converged } = ascend(losses, &start, &bounds, plan.most_tries);
     let mut model = with(&variables.iter().map(|variable| variable.at).collect::<Vec<f64>>());
@@ -385,23 +392,4 @@ fn describe_answers(answers: &ProbeAnswerFit) -> String {
         text.push_str(&format!("{:<24}{:>16.4}{width:>24}\n", one.name, one.value));
     }
     text
-}
-
-/// `at`: on the unbounded scale of the fit; other parameters as in `base`.
-fn model_at(base: &HumanModel, parameters: &[HumanModelParameter], at: &[f64]) -> HumanModel {
-    let mut model = base.clone();
-    parameters.iter().zip(at).for_each(|(parameter, &scaled)| parameter.set(&mut model, parameter.from_scale(scaled)));
-    model
-}
-
-fn point_of(model: &HumanModel, parameters: &[HumanModelParameter]) -> Vec<f64> {
-    parameters.iter().map(|one| one.to_scale(one.get(model))).collect()
-}
-
-fn bounds_of(parameters: &[HumanModelParameter]) -> Vec<[f64; 2]> {
-    parameters.iter().map(|one| one.bounds().map(|end| one.to_scale(end))).collect()
-}
-
-fn is_possible(model: &HumanModel) -> bool {
-    ranges::check_human_model(model).is_ok() && model.fault().is_none()
 }

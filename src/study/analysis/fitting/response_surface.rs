@@ -24,17 +24,12 @@ pub fn points(variables: usize) -> usize {
     design(variables).len()
 }
 
-/// The points at which [`surface`] evaluates its function, in the order of evaluation.
-fn points_around(centre: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
-    let at = |by: Vec<f64>| by.iter().zip(centre).zip(steps).map(|((by, centre), step)| centre + by * step).collect();
-    design(centre.len()).into_iter().map(at).collect()
-}
-
 /// Values that are not finite are ignored; `None` if too few remain.
 pub fn surface(mut function: impl FnMut(&[f64]) -> f64, centre: &[f64], steps: &[f64]) -> Option<QuadraticSurface> {
     let n = centre.len();
     let (mut rows, mut values) = (Vec::new(), Vec::new());
-    for (by, at) in design(n).into_iter().zip(points_around(centre, steps)) {
+    for by in design(n) {
+        let at: Vec<f64> = by.iter().zip(centre).zip(steps).map(|((by, centre), step)| centre + by * step).collect();
         let value = function(&at);
         if value.is_finite() {
             rows.extend(terms(&by));

@@ -22,7 +22,7 @@ if (all(c("none", "wizard") %in% colnames(paired))) {
   cat(sprintf("paired_difference: %.6f over %d participants\n", mean(difference), length(difference)))
 }
 
-human <- actions[actions$agent == "human", ]
+human <- actions[actions$agent == "human" & actions$recording %in% counted$recording, ]
 cat("presses_human:", nrow(human), "\n")
 causes <- table(human$cause)
 for (cause in sort(as.character(names(causes)), method = "radix")) cat(sprintf("cause %s: %d\n", cause, causes[[cause]]))

@@ -26,7 +26,7 @@ def main(folder):
     if {"none", "wizard"} <= set(paired.columns):
         difference = paired["wizard"] - paired["none"]
         print(f"paired_difference: {difference.mean():.6f} over {len(difference)} participants")
-    human = actions[actions["agent"] == "human"]
+    human = actions[(actions["agent"] == "human") & actions["recording"].isin(counted["recording"])]
     print("presses_human:", len(human))
     for cause, number in human["cause"].dropna().value_counts().sort_index().items():
         print(f"cause {cause}: {number}")

@@ -1,7 +1,7 @@
 //! Command `tomcom plan`: participants, groups, progress and next recordings of a study.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
@@ -151,9 +151,19 @@ pub fn check_frozen(session: &Path, files: &SessionSetup, frozen: &Path) -> File
     if study.digest == plan.plan_digest {
         return Ok(());
     }
-    let too = |others: &[PlanDifference]| match others {
-        [] => String::new(),
-        others => format!("; changed, too: {}", listed(others)),
+    let KitchenWithSources { layout, recipes, .. } = &files.kitchen;
+    let folder = session.parent().unwrap_or(Path::new("."));
+    let layout_path = folder.join(&layout.path);
+    let recipes_path = layout_path.parent().unwrap_or(Path::new(".")).join(&recipes.path);
+    let sources = [(layout_path, &layout.text, "layout"), (recipes_path, &recipes.text, "recipes")];
+    let frozen_text = |kind: &str| plan.settings[kind].as_str().unwrap_or_default();
+    let texts = plan.texts_differ_from(&study);
+    // The error points to the first difference; the others are listed, whatever file they are in.
+    let too = |others: &[PlanDifference], sources: &[(PathBuf, &String, &str)], texts: &[PlanDifference]| {
+        let files = sources.iter().filter(|(_, now, kind)| *now != frozen_text(kind));
+        let listed = [others, texts].into_iter().filter(|some| !some.is_empty()).map(listed);
+        let all: Vec<String> = listed.chain(files.map(|(path, ..)| path.display().to_string())).collect();
+        if all.is_empty() { String::new() } else { format!("; changed, too: {}", all.join(", ")) }
     };
     let right = |value: &str| format!("{value}, as it was frozen in {}", frozen.display());
     let changed = plan.differs_from(&study);
@@ -161,27 +171,20 @@ pub fn check_frozen(session: &Path, files: &SessionSetup, frozen: &Path) -> File
         let text = read_text(session)?;
         let [before, found] = first.settings();
         let place = place_of(&text, &first.path, first.nth);
-        return Err(FileError::at(session, &text, place, found, right(&before) + &too(others)));
+        return Err(FileError::at(session, &text, place, found, right(&before) + &too(others, &sources, &texts)));
     }
-    let KitchenWithSources { layout, recipes, .. } = &files.kitchen;
-    let folder = session.parent().unwrap_or(Path::new("."));
-    let layout_path = folder.join(&layout.path);
-    let recipes_path = layout_path.parent().unwrap_or(Path::new(".")).join(&recipes.path);
-    for (path, now, before) in [
-        (layout_path, &layout.text, &plan.settings["layout"]),
-        (recipes_path, &recipes.text, &plan.settings["recipes"]),
-    ] {
-        let before = before.as_str().unwrap_or_default();
-        if now != before {
+    for (nth, (path, now, kind)) in sources.iter().enumerate() {
+        let before = frozen_text(kind);
+        if *now != before {
             let same =
                 now.split_inclusive('\n').zip(before.split_inclusive('\n')).take_while(|(now, before)| now == before);
             let start = same.map(|(line, _)| line.len()).sum();
             let [found, wanted] =
                 [now, before].map(|text| text[start..].lines().next().unwrap_or("the end of the file"));
-            return Err(FileError::at(&path, now, Some(start..start + found.len()), found.to_string(), right(wanted)));
+            let right = right(wanted) + &too(&[], &sources[nth + 1..], &texts);
+            return Err(FileError::at(path, now, Some(start..start + found.len()), found.to_string(), right));
         }
     }
-    let texts = plan.texts_differ_from(&study);
     let Some((first, others)) = texts.split_first() else {
         return Err(wrong("another text of what participants are told, taught or asked"));
     };
@@ -193,7 +196,7 @@ pub fn check_frozen(session: &Path, files: &SessionSetup, frozen: &Path) -> File
     let now = first.values[1].as_ref().and_then(|now| now.as_str()).filter(|now| !now.is_empty());
     let place = now.and_then(|now| Some(text.find(now)?..text.find(now)? + now.len()));
     let [before, _] = first.settings();
-    Err(FileError::at(&path, &text, place, first.to_string(), right(&before) + &too(others)))
+    Err(FileError::at(&path, &text, place, first.to_string(), right(&before) + &too(others, &[], &[])))
 }
 
 /// Progress of the study as text for a terminal of this width. Where the conditions leave little room, the letters of the

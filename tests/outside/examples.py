@@ -23,8 +23,10 @@ SESSION = Path("sessions/paper.toml")
 def simulate(tomcom, folder):
     session = shortened(SESSION, folder / "study.toml", 60)
     run(tomcom, "simulate", session, "--trials", 8, "--seed", 11, "--out", folder / "recordings")
+    recordings = sorted(path for path in (folder / "recordings").iterdir() if path.is_dir())
+    run(tomcom, "exclude", recordings[-1], "--reason", "asked for it")
     run(tomcom, "study", folder / "recordings", "--out", folder / "study", "--skip", "concepts")
-    return sorted(path for path in (folder / "recordings").iterdir() if path.is_dir())
+    return recordings
 
 
 def pause(recording):
@@ -133,10 +135,13 @@ def main(tomcom, folder):
     compare(figures(run(python, "examples/read_recording.py", continued)), expected(recordings[1]), continued)
     tables = run(python, "examples/read_tables.py", folder / "study")
     assert "paired_difference: " in tables and "cause " in tables, tables
-    rates = {}
+    rates, presses = {}, 0
     with open(folder / "study/trials.csv", newline="", encoding="utf-8") as trials:
         for row in csv.DictReader(trials):
-            rates.setdefault(row["condition"], []).append(float(row["error_rate_human"]))
+            if row["counts"] == "true":
+                rates.setdefault(row["condition"], []).append(float(row["error_rate_human"]))
+                presses += int(row["human_presses"])
+    assert sum(map(len, rates.values())) == 7 and f"presses_human: {presses}\n" in tables, (tables, presses)
     for condition, found in rates.items():
         assert f"error_rate_human {condition}: {statistics.fmean(found):.6f} in {len(found)} trials\n" in tables, (tables, rates)
     if has_r:

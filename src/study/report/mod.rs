@@ -148,6 +148,9 @@ fn summary(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStati
         p class="lead" {
             (text::count(figures.trials, "trial", "trials")) " of "
             (text::count(figures.participants, "participant", "participants")) ", " (totals.actions) " recorded presses."
+            @if !figures.left_out.is_empty() {
+                " Left out: " (text::count(figures.left_out.len() as u64, "trial", "trials")) ", " a href="#left-out" { "with reasons" } "."
+            }
         }
         "\n"
         div class="cards" {
@@ -236,7 +239,7 @@ const MOST_TRIALS: usize = 60;
 fn trials_section(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStatistics]) -> Markup {
     let content = html! {
         div class="long" { (counting(captions, trials)) } "\n"
-        h3 { "Excluded" } "\n"
+        h3 id="left-out" { "Excluded" } "\n"
         (left_out(captions, figures))
         @if figures.practice > 0 {
             p class="note" {

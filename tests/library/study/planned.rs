@@ -255,6 +255,12 @@ fn a_frozen_plan_names_file_and_item_of_another_question() {
     assert!(told.starts_with(&format!("{path}:{line}: found questionnaire acceptance.item.{id}.text from ")), "{told}");
     assert!(told.contains("\"Another question\" to "), "{told}");
     assert!(error.remedy().starts_with("text = \"Another question\", as it was frozen in "), "{}", error.remedy());
+    // Beside another change it is named, too.
+    let mut both = files.clone();
+    both.spec.seed += 1;
+    let error = check_frozen(session, &both, &file).expect_err("another seed");
+    let told = format!("; changed, too: questionnaire acceptance.item.{id}.text from ");
+    assert!(error.remedy().starts_with("seed = ") && error.remedy().contains(&told), "{}", error.remedy());
 }
 
 /// Three conditions made of a plan that asks after its two trials: the last questionnaire would be lost without a word.

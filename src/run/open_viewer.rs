@@ -27,6 +27,7 @@ use tomcom_session::history::{event_words, signal_words, wording};
 use tomcom_session::log::video_file::{self, AttachedFilm};
 use tomcom_session::log::{LOG_NAME, LogReader, RecordingLock, RecordingWriteError, rater_codes};
 use tomcom_session::replay::{RecordingReplay, ReplayLandmark};
+use tomcom_session::wizard_log::signal_verdicts;
 use tomcom_session::{Session, TimestampedEvent};
 
 /// First network port that is tried for the web viewer.
@@ -441,8 +442,10 @@ pub fn landmarks(recording: &Path, kinds: &[ReplayLandmark]) -> FileResult<Vec<R
         }
     }
     if kinds.contains(&ReplayLandmark::Signal) {
+        let verdicts = signal_verdicts(follower);
         for (nth, shown) in follower.signals.shown.iter().enumerate() {
-            add(shown.time, shown.ended, format!("signal {}: {}", nth + 1, signal_words::told(follower, nth)));
+            let told = signal_words::told(follower, verdicts.as_deref(), nth);
+            add(shown.time, shown.ended, format!("signal {}: {told}", nth + 1));
         }
     }
     if kinds.contains(&ReplayLandmark::Marker) {

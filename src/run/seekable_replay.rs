@@ -19,6 +19,7 @@ use tomcom_session::log::LogPlace;
 use tomcom_session::replay::RecordingReplay;
 use tomcom_session::replay::ReplayLandmark;
 use tomcom_session::settings::WizardVisibility;
+use tomcom_session::wizard_log::signal_verdicts;
 use tomcom_session::{Event, Session, TimelineEntry, TimestampedEvent, TrialPhase, apply};
 use tomcom_study::analysis::recording_summary::ExclusionStatus;
 use tomcom_study::standing::exclusion_status;
@@ -437,7 +438,7 @@ impl SeekableReplay {
             ReplayLandmark::Signal => {
                 let follower = &self.replay.follower;
                 let nth = follower.signals.shown.iter().position(|shown| shown.time == now)?;
-                Some(signal_words::told(follower, nth))
+                Some(signal_words::told(follower, signal_verdicts(follower).as_deref(), nth))
             }
             // The whole recording knows the words of a note that the wizard typed later.
             ReplayLandmark::Marker => {

@@ -7,6 +7,7 @@ use crate::arm_comparison::{
     ContrastDoubt, ContrastVerdict, FEW_EVENTS, StudyArmComparison, StudyArmContrast, StudyConditionSummary,
 };
 use crate::figures::StudySummary;
+use crate::planned_trial::named;
 use tomcom_core::base::text::count;
 use tomcom_core::measures::raters::BeliefSource;
 use tomcom_session::plan::PrimaryOutcome;
@@ -40,12 +41,10 @@ pub fn primary_outcome(figures: &StudySummary) -> Vec<String> {
         1 => "one condition, so nothing is compared: no trial of another one counts",
         _ => "not compared: too few participants have trials in several conditions",
     };
-    let out = figures.left_out.iter().map(|one| format!("{} ({})", one.recording, one.reason));
-    let out: Vec<String> = out.take(MOST_NAMED).collect();
-    let out = match figures.left_out.len().saturating_sub(MOST_NAMED) {
-        _ if out.is_empty() => String::new(),
-        0 => format!("; left out: {}", out.join(", ")),
-        more => format!("; left out: {}, and {more} more", out.join(", ")),
+    let out: Vec<String> = figures.left_out.iter().map(|one| format!("{} ({})", one.recording, one.reason)).collect();
+    let out = match out.is_empty() {
+        true => String::new(),
+        false => format!("; left out: {}", named(&out, MOST_NAMED)),
     };
     let title = outcome.title();
     vec![format!("Primary outcome, {title} per 100 presses of the human: {}; {why}{out}.", rates.join(", "))]

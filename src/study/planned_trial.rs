@@ -102,7 +102,7 @@ pub fn foreign_in_words(foreign: &[ForeignRecording]) -> Option<String> {
     let group = |group: &[ForeignRecording]| {
         let names: Vec<&str> = group.iter().map(|one| one.recording.as_str()).collect();
         let are = count(group.len() as u64, "recording is", "recordings are");
-        format!("{are} {}, and left out: {}", group[0].reason.words(), named(&names))
+        format!("{are} {}, and left out: {}", group[0].reason.words(), named(&names, NAMED))
     };
     let groups: Vec<String> = foreign.chunk_by(|a, b| a.reason == b.reason).map(group).collect();
     (!groups.is_empty()).then(|| groups.join("; "))
@@ -161,12 +161,12 @@ pub(crate) fn differing_copy(first: &str) -> (String, String) {
     (found, remedy.to_string())
 }
 
-const NAMED: usize = 8;
+pub(crate) const NAMED: usize = 8;
 
-/// The first names, and how many more there are.
-pub(crate) fn named<Name: AsRef<str>>(names: &[Name]) -> String {
-    let first: Vec<&str> = names.iter().take(NAMED).map(AsRef::as_ref).collect();
-    let more = match names.len().saturating_sub(NAMED) {
+/// At most so many names, and how many more there are.
+pub(crate) fn named<Name: AsRef<str>>(names: &[Name], most: usize) -> String {
+    let first: Vec<&str> = names.iter().take(most).map(AsRef::as_ref).collect();
+    let more = match names.len().saturating_sub(most) {
         0 => String::new(),
         more => format!(", and {more} more"),
     };

@@ -297,7 +297,7 @@ impl SignalScene {
     }
 }
 
-/// The page of the signals, the first so many of which are over: after the trial of all, before of the newest.
+/// The page of the signals: of the newest while the trial runs, of all after it. `over`: number of signals that are over.
 fn signal_page(follower: &SessionFollower, over: usize) -> String {
     let (session, verdicts) = (&follower.session, signal_verdicts(follower));
     let told = |(nth, shown): (usize, &ShownSignalRecord)| {

@@ -2,7 +2,7 @@
 
 use crate::follower::SessionFollower;
 use crate::history::wording;
-use crate::wizard_log::{ShownSignalRecord, signal_verdicts};
+use crate::wizard_log::ShownSignalRecord;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Sender;
 use tomcom_core::communication::concept::BenefitUnit;
@@ -62,11 +62,12 @@ pub fn sent(follower: &SessionFollower, shown: &ShownSignalRecord) -> Vec<String
     parts.into_iter().flatten().collect()
 }
 
-/// A signal with its sender, what became of it, whether it was a hit, and last what the assistant thought.
-pub fn told(follower: &SessionFollower, nth: usize) -> String {
+/// A signal with its sender, what became of it, whether it was a hit, and last what the assistant thought. `verdicts`: as of
+/// [`judged`].
+pub fn told(follower: &SessionFollower, verdicts: Option<&[SignalVerdict]>, nth: usize) -> String {
     let mut parts = sent(follower, &follower.signals.shown[nth]);
     parts.insert(1, outcome(follower, nth));
-    parts.insert(2, judged(follower, signal_verdicts(follower).as_deref(), nth));
+    parts.insert(2, judged(follower, verdicts, nth));
     parts.retain(|part| !part.is_empty());
     parts.join("; ")
 }

@@ -26,7 +26,7 @@ use crate::gathered::{GatheredPlace, GatheredRecordings, name};
 use crate::kept_cost::KeptCost;
 use crate::pass::reading::{AnalysisScope, RecordedConsent, WaivedPractice};
 pub use crate::pass::tell::{describe, describe_arms};
-use crate::planned_trial::{ForeignRecording, RecordingCopy, foreign_in_words, missing_trials, named};
+use crate::planned_trial::{ForeignRecording, NAMED, RecordingCopy, foreign_in_words, missing_trials, named};
 use crate::study_part::AnalysedRecording;
 use crate::tables::communications::concepts;
 use crate::tables::participants::{
@@ -345,7 +345,7 @@ fn nothing_counts(
     let practice = (practice > 0).then(|| format!("{} of practice", count(practice, "recording", "recordings")));
     let left_out = trials.iter().filter_map(|one| Some(format!("{} ({})", one.recording, one.left_out.as_ref()?)));
     let left_out: Vec<String> = left_out.collect();
-    let trials = (!left_out.is_empty()).then(|| format!("left out: {}", named(&left_out)));
+    let trials = (!left_out.is_empty()).then(|| format!("left out: {}", named(&left_out, NAMED)));
     let there: Vec<String> = [practice, trials, foreign_in_words(foreign)].into_iter().flatten().collect();
     let found = format!("no trial that counts{}{}", if there.is_empty() { "" } else { ": " }, there.join("; "));
     let path = analysis.paths.first().map_or(Path::new("."), PathBuf::as_path);

@@ -115,20 +115,31 @@ async fn over(mut told: watch::Receiver<u64>) {
 impl LogSink for ViewerServer {
     fn send(&self, message: LogMsg) {
         let bytes = OVERHEAD + message.total_size_bytes() as usize;
-        // Messages that are sent only once are kept for ever: the recording's name, the viewer's layout, and data
-        // without a time.
-        let entity = match &message {
+        let chunk = match &message {
             LogMsg::ArrowMsg(store, data) if store.is_recording() => Chunk::from_arrow_msg(data).ok(),
             _ => None,
         };
-        let entity = entity.filter(|chunk| !chunk.is_static()).map(|chunk| chunk.entity_path().to_string());
-        self.shared.lock().add(StreamMessage::Told(Arc::new(message)), bytes, entity.as_deref());
+        let message = StreamMessage::Told(Arc::new(message));
+        let mut kept = self.shared.lock();
+        match chunk {
+            Some(chunk) if !chunk.is_static() => kept.add(message, bytes, &chunk.entity_path().to_string()),
+            // The recording's name and the viewer's layout have no chunk.
+            timeless => kept.add_timeless(message, bytes, timeless.map(|chunk| said(&chunk))),
+        }
+        drop(kept);
         self.tell.send_modify(|told| *told += 1);
     }
 
     fn flush_blocking(&self, _: Duration) -> Result<(), SinkFlushError> {
         Ok(())
     }
+}
+
+/// The entity and the components that a chunk is about.
+fn said(chunk: &Chunk) -> String {
+    let mut components: Vec<String> = chunk.components().keys().map(|component| component.to_string()).collect();
+    components.sort();
+    format!("{} {}", chunk.entity_path(), components.join(" "))
 }
 
 /// Merges pieces (chunks) of one entity into one.

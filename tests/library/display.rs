@@ -354,6 +354,8 @@ fn a_language_may_come_from_a_file() {
     let files = read_session(&session).expect("a session file");
     let scene = scene(engine(files).session());
     assert_eq!((scene.language.as_str(), scene.storages[0].label.as_str()), ("fr", "riz"));
+    // The accessible name of a shelf's button is the language's, too.
+    assert!(scene.buttons.iter().any(|knob| knob.name == "take rice" && knob.label == "take riz"));
     std::fs::write(&session, format!("layout = {layout:?}\n[display]\nlanguage = \"fi.toml\"\n")).expect("written");
     let error = format!("{:?}", miette::Report::new(read_session(&session).expect_err("no such file")));
     assert!(error.contains("session.toml:3:") && error.contains("\"en\", \"de\", \"es\""), "{error}");

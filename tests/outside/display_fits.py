@@ -142,7 +142,7 @@ MEASURE = """([states, DISTANCE_M, NEAR_EM]) => Object.entries(states).map(([nam
     for (const text of others) if (said && meets(box(said), text)) found.push(`a line about no place hides "${text.said}"`);
     Stage.say("");
   }
-  const labels = [...document.querySelectorAll("#stage [aria-label]")].map((made) => made.getAttribute("aria-label"));
+  const labels = ["aria-label", "title", "alt", "placeholder"].flatMap((name) => [...document.querySelectorAll(`#stage [${name}]`)].map((made) => made.getAttribute(name)));
   const [choice] = [...document.querySelectorAll(".probing .choice")].map(box);
   return { name, found: [...new Set(found)], minutes, least, lowest, choice: choice && [choice.left, choice.top], said: [...texts.map(({ said }) => said), ...labels] };
 })"""
@@ -197,11 +197,24 @@ def words_in(text):
     return {word.casefold() for word in re.findall(r"[^\W\d_]{2,}", text)}
 
 
+# Fields of scene and state whose texts stand on the page; names of buttons, contents and places stand there in no language.
+SAID = ("title", "label", "said", "words", "text", "unit", "low", "high", "answer", "choices", "explanation")
+
+
+def said_in(told, field=""):
+    """The texts in what the page is told."""
+    if isinstance(told, dict):
+        return [said for name, one in told.items() for said in said_in(one, "words" if field == "words" else name)]
+    if isinstance(told, list):
+        return [said for one in told for said in said_in(one, field)]
+    return [told] if isinstance(told, str) and field in SAID else []
+
+
 def of_the_page(measured, language, sight, scene):
     """Words that stand on the page and in no file: in the language whose words are longer, those that neither it nor the state has."""
     if language != "longer":
         return []
-    known = words_in(json.dumps([sight, scene], ensure_ascii=False))
+    known = words_in(" ".join(said_in([sight, scene])))
     return sorted({f'"{word}" is not from the file of the language' for said in measured["said"] for word in words_in(said) - known})
 
 

@@ -157,8 +157,18 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
                 pictures("number-refused")
             for _ in typed:
                 keyboard.press("Backspace")
+        # A number that is not complete is neither right nor wrong.
+        half = "[document.querySelector('.next').getAttribute('aria-disabled'), document.querySelectorAll('.hint.wrong').length]"
         keyboard.type("1")
+        assert page.ask(half) == ["true", 0], page.ask(half)
         click('[data-typed="9"]')
+        # "No answer" is chosen like an answer, and takes back nothing that was typed.
+        keyboard.press("Delete")
+        left = "[document.querySelector('.number output').textContent, document.querySelectorAll('.skip.chosen').length]"
+        assert page.ask(left) == ["19", 1], page.ask(left)
+        keyboard.press("Backspace")
+        keyboard.type("9")
+        assert page.ask(left) == ["19", 0], page.ask(left)
         pictures("number")
         # A second touch of "Next" goes nowhere: neither "No answer" nor another answer is where it was.
         page.page.dblclick('[data-does="next"]')
@@ -178,7 +188,14 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         keyboard.press("Enter")
         item("handedness")
         pictures("choice")
-        click('[data-option="left"]')
+        # What is chosen stays to be seen, however often; "Next" alone goes on.
+        page.page.dblclick('[data-option="right"]')
+        keyboard.press("1")
+        page.page.dblclick('[data-option="left"]')
+        page.page.wait_for_timeout(500)
+        item("handedness")
+        assert page.ask("[...document.querySelectorAll('.options .chosen')].map((made) => made.dataset.option)") == ["left"]
+        page.page.dblclick('[data-does="next"]')
         item("vision_aids")
         click('[data-option="lenses"]')
         answer(["lenses"])
@@ -218,6 +235,8 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         page.stage("questionnaire")
         item("colour_vision")
         keyboard.press("0")
+        page.wait_for("document.querySelector('.skip.chosen')")
+        keyboard.press("Enter")
         item("cooking")
         assert [sign(made) for made in (".turns .back", ".turns .skip")] == ["←", "0"]
         pictures("scale")
@@ -226,8 +245,10 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
             keyboard.press(key)
             page.wait_for(f"document.querySelector('.why.says')?.textContent === Stage.scene().words['{said}']")
         keyboard.press("3")
+        keyboard.press("Enter")
         item("robots")
         click('[data-rate="2"]')
+        click('[data-does="next"]')
         item("eye_tracking")
         click('[data-does="back"]')
         item("robots")
@@ -235,6 +256,7 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         keyboard.press("Enter")
         item("eye_tracking")
         keyboard.press("1")
+        keyboard.press("Enter")
         page.wait_for("!Stage.shown().question.item")
         pictures("confirm")
         # No word of an answer is broken.

@@ -188,10 +188,12 @@ fn knobs(kitchen: &Kitchen, spec: &SessionSpec, words: &DisplayWords) -> Vec<Dis
             ButtonAction::Trash => "trash",
             ButtonAction::Serve(_) => "serve",
         };
-        let (SceneElement::Location(at) | SceneElement::Storage(at)) = spot(kitchen, Agent::Human, button.action);
-        let label = match does {
-            "serve" => words.of_name("serve"),
-            _ => words.of_name(&button.name),
+        let place = spot(kitchen, Agent::Human, button.action);
+        let (SceneElement::Location(at) | SceneElement::Storage(at)) = place;
+        let label = match place {
+            SceneElement::Storage(shelf) => words.filled("do take", &words.of_name(&kitchen.storages[shelf].label)),
+            SceneElement::Location(_) if does == "serve" => words.of_name("serve"),
+            SceneElement::Location(_) => words.of_name(&button.name),
         };
         let (name, area) = (button.name.clone(), button.area.clone());
         let &tomcom_core::kitchen::Button { key, gamepad, colour, .. } = button;

@@ -97,8 +97,8 @@ const Probe = (() => {
     const all = element("div", "probing"), bar = element("div", "left");
     all.setAttribute("role", "group");
     parts = { all, buttons: [], kit };
-    // Its place is there in any case: what is touched stands where it stood before.
-    const late = text("p", probe.late ? "late" : "late none", probe.practise ? words["tutorial late"] : words["probe late"].replace("#", probe.closed ? probe.of : probe.question - 1));
+    // Its place is there in any case: what is touched stands where it stood before. Over the next question it passes, since it is not about that one.
+    const late = text("p", !probe.late ? "late none" : probe.practise || probe.closed ? "late" : "late passes", probe.practise ? words["tutorial late"] : words["probe late"].replace("#", probe.closed ? probe.of : probe.question - 1));
     if (probe.late) late.setAttribute("role", "alert");
     if (probe.closed) {
       all.append(late, text("p", "goes-on", words["probe goes on"]), text("p", "seconds", ""));
@@ -161,14 +161,16 @@ const Probe = (() => {
   /** Marks the selected choice, and draws the buttons below. */
   function update() {
     const { all, kit } = parts, words = kit.scene.words, row = all.querySelector(".row");
-    for (const made of all.querySelectorAll(".choice")) {
+    all.querySelectorAll(".choice").forEach((made, at) => {
       const isChosen = chosen === Number(made.dataset.believe);
       made.classList.toggle("chosen", isChosen);
       made.setAttribute("aria-pressed", isChosen);
-    }
+      // Digits are those of the buttons below once these are asked for.
+      Questions.sign(made, !waits && at < 9 && `${at + 1}`);
+    });
     row.replaceChildren();
     const button = (name, value, label) => {
-      const made = kit.text("button", name, label);
+      const made = Questions.sign(kit.text("button", name, label), `${value}`);
       made.dataset[name] = value;
       row.append(made);
     };
@@ -239,12 +241,13 @@ const Probe = (() => {
 
   /** A key or a gamepad button is pressed; returns whether it has a meaning here. */
   function press(name, isHeld) {
-    const step = STEPS[name];
-    if (!step && !["Enter", " "].includes(name)) return false;
+    const step = STEPS[name], numbered = /^[0-9]$/.test(name) && parts?.buttons.find((made) => made.dataset.key === name);
+    if (!step && !numbered && !["Enter", " "].includes(name)) return false;
     if (!shown || shown.closed || !parts.buttons.length || isTold) return true;
     const at = parts.all.querySelector(".at");
-    // The first key of any kind shows where the keys are.
-    if (step || !at) mark(at && parts.buttons.includes(at) ? next(at, step) : first());
+    // A digit only selects: it may have been meant for a button of the kitchen. The first key of any kind shows where the keys are.
+    if (numbered) mark(numbered);
+    else if (step || !at) mark(at && parts.buttons.includes(at) ? next(at, step) : first());
     else if (!isHeld) {
       const { believe } = at.dataset, { className } = at;
       touch(at.dataset);

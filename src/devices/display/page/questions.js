@@ -4,28 +4,32 @@ const Questions = (() => {
   const SLIDER_END = 100;
   // Longest entry of a number that is kept, in signs, and most digits of a number: beyond them it is refused, not cut.
   const LONGEST_ENTRY = 24, MOST_DIGITS = 15;
-  // A touch within this time after another item appeared was meant for the item before it. For so long a choice is seen before the next item comes.
-  const SETTLES_MS = 350, SEEN_MS = 300;
-  // Answer to the present item that is typed or dragged but not sent yet; `isRefused`: somebody tried to go on with it.
-  let draft = { item: null, value: null, isRefused: false };
-  let redraw = () => {}, tell = () => {}, shownItem = "", settled = 0, giving = 0, chosen = null;
+  // A touch within this time after another item appeared was meant for the item before it.
+  const SETTLES_MS = 350;
+  // Answer to the present item that is chosen, typed or dragged; `isSkipped`: "No answer" is chosen; `isRefused`: somebody tried to go on with it;
+  // `isGiven`: it was sent, and is kept only until another item comes.
+  const NONE = { item: null, value: null, isSkipped: false, isRefused: false, isGiven: false };
+  let draft = NONE, redraw = () => {}, tell = () => {}, shownItem = "", settled = 0;
 
-  const pending = (question) => (draft.item === question.item ? draft.value : null);
-  const keep = (question, value) => { draft = { item: question.item, value, isRefused: false }; };
-  const give = (question, answer) => { forgo(); tell({ kind: "answer", item: question.item, answer }); };
+  const isOwn = (question) => draft.item === question.item;
+  const pending = (question) => (isOwn(question) ? draft.value : null);
+  const isSkipped = (question) => (isOwn(question) ? draft.isSkipped : question.skipped);
+  const keep = (question, value) => { draft = { ...NONE, item: question.item, value }; };
+  const give = (question, answer) => {
+    draft = { ...draft, isGiven: true };
+    tell({ kind: "answer", item: question.item, answer });
+  };
 
-  /** What was marked a moment ago is not given. */
-  function forgo() {
-    clearTimeout(giving);
-    chosen = null;
+  /** Marks what was chosen; going on gives it. */
+  function mark(question, answer) {
+    keep(question, answer);
+    redraw();
   }
 
-  /** Marks what was chosen, and gives it once that was seen; another choice meanwhile takes its place. */
-  function mark(question, answer, attribute) {
-    forgo();
-    document.querySelectorAll(`[${attribute}]`).forEach((made) => made.classList.toggle("chosen", made.getAttribute(attribute) === String(answer)));
-    chosen = () => give(question, answer);
-    giving = setTimeout(chosen, SEEN_MS);
+  /** Chooses "No answer"; what was typed stays to be seen until the participant goes on. */
+  function skip(question) {
+    draft = { ...NONE, item: question.item, value: pending(question), isSkipped: true };
+    redraw();
   }
 
   function draw(sheet, question, words, kit) {
@@ -68,8 +72,8 @@ const Questions = (() => {
       row.append(made);
     };
     if (question.before) button("back", words.back, kind === "slider" ? "⌫" : kind !== "text" && "←");
-    if (question.item) button(question.skipped ? "skip chosen" : "skip", words.skip, ["scale", "choice"].includes(kind) ? "0" : skipKey(question, words));
-    if (question.item) button("next", words.next, "↵", question.skipped || isAnswered(question) || (isTyped(question) && pending(question)));
+    if (question.item) button(isSkipped(question) ? "skip chosen" : "skip", words.skip, ["scale", "choice"].includes(kind) ? "0" : skipKey(question, words));
+    if (question.item) button("next", words.next, "↵", isSkipped(question) || isComplete(question));
     else button("confirm", words.confirm, "↵");
     card.append(row);
     sheet.replaceChildren(card);
@@ -93,6 +97,7 @@ const Questions = (() => {
   function settle({ item, title }, sheet) {
     const now = `${title}/${item}`;
     if (now === shownItem) return;
+    if (draft.isGiven) draft = NONE;
     [shownItem, settled] = [now, performance.now() + SETTLES_MS];
     sheet.dataset.settles = "";
     setTimeout(() => { if (shownItem === now) delete sheet.dataset.settles; }, SETTLES_MS);
@@ -117,6 +122,14 @@ const Questions = (() => {
   /** Several options that were all taken back are no answer. */
   const isAnswered = ({ answer }) => answer !== null && answer.length !== 0;
   const isTyped = ({ form }) => form && ["number", "text"].includes(form.kind);
+  /** Whether an answer is sent when the participant goes on; sliders and several options are sent at once. */
+  const isSentLate = (question) => isTyped(question) || question.form?.kind === "scale" || (question.form?.kind === "choice" && !question.form.several);
+  /** Whether there is an answer with which one can go on. */
+  function isComplete(question) {
+    const value = isSentLate(question) ? pending(question) : null;
+    if (value === null) return isAnswered(question);
+    return question.form.kind === "number" ? isNumber(question.form, value) : value !== "";
+  }
 
   /** A rating scale or slider with its end labels below the first and the last point. */
   const anchored = (made, low, high, { element, text }) => {
@@ -126,7 +139,8 @@ const Questions = (() => {
   };
 
   const FORMS = {
-    scale({ form, answer }, words, kit) {
+    scale(question, words, kit) {
+      const { form } = question, answer = isSkipped(question) ? null : position(question);
       const scale = kit.element("div", "scale");
       for (let point = 1; point <= form.points; point += 1) {
         const made = kit.text("button", point === answer ? "chosen" : "", point);
@@ -135,7 +149,8 @@ const Questions = (() => {
       }
       return [anchored(scale, form.low, form.high, kit), kit.text("p", "hint", words.digits)];
     },
-    choice({ form, answer }, words, { element, text }) {
+    choice(question, words, { element, text }) {
+      const { form } = question, answer = isSkipped(question) ? null : position(question);
       const list = element("div", form.options.length > 5 ? "options many" : "options");
       form.options.forEach(({ id, text: label }, index) => {
         const made = element("button", [].concat(answer ?? []).includes(id) ? "chosen" : "");
@@ -156,9 +171,9 @@ const Questions = (() => {
         pad.append(made);
       }
       // Signs that belong to no whole number stay in the field, since without them "7,5" would be another number: 75.
-      const isOther = value && !isWhole(value) && value !== "-", isEntered = draft.isRefused || value.length >= String(form.max).length;
-      const range = `${form.min} – ${form.max} ${form.unit}`, isWrong = isOther || (value && isEntered && !isNumber(form, value));
-      const hint = text("p", isWrong ? "hint wrong" : "hint", isOther ? `${words["whole number"]} ${range}` : isWrong ? `${words["number range"]} ${range}` : range);
+      const isOther = value && !isWhole(value) && value !== "-", isEntered = draft.isRefused || value.length >= Math.max(...[form.min, form.max].map((end) => String(end).length));
+      const range = `${form.min} – ${form.max} ${form.unit}`, isWrong = !isSkipped(question) && (isOther || (value && isEntered && !isNumber(form, value)));
+      const hint = text("p", isWrong ? "hint wrong" : "hint", isWrong && isOther ? `${words["whole number"]} ${range}` : isWrong ? `${words["number range"]} ${range}` : range);
       if (isWrong) hint.setAttribute("role", "alert");
       return [entry, hint, pad];
     },
@@ -174,7 +189,8 @@ const Questions = (() => {
       field.addEventListener("input", () => {
         keep(question, field.value);
         opens(document.querySelector(".turns .next"), field.value);
-        sign(document.querySelector(".turns .skip"), skipKey(question, words));
+        const left = sign(document.querySelector(".turns .skip"), skipKey(question, words));
+        left.classList.remove("chosen");
         count();
       });
       hint.setAttribute("role", "alert");
@@ -221,7 +237,7 @@ const Questions = (() => {
       const drag = (event) => { keep(question, at(event)); place(draft.value); };
       slider.addEventListener("pointerdown", (event) => { slider.setPointerCapture(event.pointerId); drag(event); });
       slider.addEventListener("pointermove", (event) => slider.hasPointerCapture(event.pointerId) && drag(event));
-      slider.addEventListener("pointerup", (event) => { drag(event); give(question, draft.value); });
+      slider.addEventListener("pointerup", (event) => slide(question, at(event)));
       const hint = sign(kit.text("p", "hint", position(question) === null ? words.slider : "\u00a0"), "← →");
       return [anchored(slider, form.low, form.high, kit), hint];
     },
@@ -236,31 +252,34 @@ const Questions = (() => {
   /** Number of characters, as the program counts them: a sign of two code units is one. */
   const lengthOf = (typed) => [...inOneLine(typed)].length;
 
-  /** Goes on to the next item, with the typed answer or with the answer that was given before. */
+  /** Goes on to the next item, with what was chosen or typed or with the answer that was given before. */
   function next(question) {
-    const typed = isTyped(question) ? pending(question) : null;
-    if (typed === null && question.skipped) return tell({ kind: "next" });
-    if (typed === null && !isAnswered(question)) return chosen ? chosen() : Stage.say(isTyped(question) ? "first type" : "tutorial first question");
-    if (typed === null) return tell({ kind: "next" });
-    const words = inOneLine(typed);
-    if (!words) return Stage.say("first type");
-    const { kind, length } = question.form;
-    if (kind === "text" && words && lengthOf(words) <= length) return give(question, words);
-    if (kind === "number" && isNumber(question.form, words)) return give(question, Number(words));
-    draft.isRefused = true;
-    return redraw();
+    // The second of two quick presses, or one that was meant for the item before, goes nowhere.
+    if (performance.now() < settled) return;
+    const value = isSentLate(question) ? pending(question) : null, given = isTyped(question) && value !== null ? inOneLine(value) : value;
+    const isLeft = isSkipped(question), isKept = isLeft ? question.skipped : value === null;
+    if (!isLeft && (given === "" || (isKept && !isAnswered(question)))) return Stage.say(isTyped(question) ? "first type" : "tutorial first question");
+    const { kind, length } = question.form ?? {};
+    if (!isLeft && !isKept && ((kind === "text" && lengthOf(given) > length) || (kind === "number" && !isNumber(question.form, given)))) {
+      draft.isRefused = true;
+      return redraw();
+    }
+    settled = performance.now() + SETTLES_MS;
+    if (isKept) tell({ kind: "next" });
+    else give(question, isLeft ? null : kind === "number" ? Number(given) : given);
   }
 
-  const skip = (question) => { forgo(); keep(question, null); give(question, null); };
-  const back = (question) => { forgo(); return question.before && tell({ kind: "back", item: question.before }); };
+  const back = (question) => question.before && tell({ kind: "back", item: question.before });
 
   /** Of several options, one that stands alone takes the others back, and each other one takes it back. */
   function choose(question, id) {
-    const { several, options } = question.form, before = question.answer ?? [];
-    if (!several) return mark(question, id, "data-option");
+    const { several, options } = question.form, before = (!isSkipped(question) && question.answer) || [];
+    if (!several) return mark(question, id);
     const isAlone = (one) => options.some((option) => option.id === one && option.alone);
     const left = before.includes(id) ? before : before.filter((one) => !isAlone(one) && !isAlone(id));
-    return give(question, options.map((option) => option.id).filter((one) => left.includes(one) !== (one === id)));
+    keep(question, null);
+    give(question, options.map((option) => option.id).filter((one) => left.includes(one) !== (one === id)));
+    return redraw();
   }
 
   /** A sign or the delete key was typed or touched. */
@@ -275,6 +294,7 @@ const Questions = (() => {
   function slide(question, value) {
     keep(question, onStep(question.form, value));
     give(question, draft.value);
+    redraw();
   }
 
   // Input that holds the consent button, and the timer at whose end consent is given.
@@ -317,11 +337,11 @@ const Questions = (() => {
     if (kind === "number" && [...name].length === 1) return type(question, name);
     if (kind === "number" && name === "Backspace" && (pending(question) ?? question.answer ?? "") !== "") return type(question, "⌫");
     if (question.item && (name === "Delete" || (digit === 0 && ["scale", "choice"].includes(kind)))) return skip(question);
-    if (kind === "scale" && digit !== null && digit <= form.points) return mark(question, digit, "data-rate");
+    if (kind === "scale" && digit !== null && digit <= form.points) return mark(question, digit);
     if (kind === "choice" && digit !== null && digit <= form.options.length) return choose(question, form.options[digit - 1].id);
     if (["ArrowLeft", "Backspace"].includes(name)) return back(question);
     if (question.item && ["ArrowRight", "Enter"].includes(name)) return next(question);
-    if (!question.item && name === "Enter") return tell({ kind: "confirm" });
+    if (!question.item && name === "Enter") return performance.now() < settled ? undefined : tell({ kind: "confirm" });
     return kind !== "text" && [...name].length === 1 ? Stage.say("nothing") : undefined;
   }
 
@@ -335,7 +355,7 @@ const Questions = (() => {
   /** One of the buttons is touched. */
   function touch({ rate, option, typed, does, review }, question) {
     if (performance.now() < settled) return;
-    if (rate) mark(question, Number(rate), "data-rate");
+    if (rate) mark(question, Number(rate));
     else if (review) tell({ kind: "back", item: review });
     else if (option) choose(question, option);
     else if (typed) type(question, typed);

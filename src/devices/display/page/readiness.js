@@ -1,5 +1,5 @@
 "use strict";
-/** Before a trial: whether screen, delay and sound are as they should be, and a button for the full screen. */
+/** Before a trial: whether screen, delay and sound are as they should be, with figures only where not, and a button for the full screen. */
 const Readiness = (() => {
   // As the console's check of the display has it.
   const SMALL_PX = [1280, 720], SLOW_MS = 30;
@@ -34,10 +34,10 @@ const Readiness = (() => {
     const [wide, high] = [window.innerWidth, window.innerHeight].map((length) => Math.round(length * devicePixelRatio));
     // Who holds an upright screen in the hand reads it from nearby.
     const isSmall = wide >= high && (wide < SMALL_PX[0] || high < SMALL_PX[1]);
-    const lines = [line(filled(words[isSmall ? "ready screen small" : "ready screen"], wide, high), !isSmall)];
+    const lines = [line(isSmall ? filled(words["ready screen small"], wide, high) : words["ready screen"], !isSmall)];
     if (isBoxes) lines.push(line(words["ready font"], false));
     if (scene.foreign_tutorial) lines.push(line(words["ready tutorial"], false));
-    if (took !== null) lines.push(line(filled(words["ready delay"], Math.round(took)), took <= SLOW_MS));
+    if (took !== null) lines.push(took <= SLOW_MS ? line(words["ready delay"], true) : line(filled(words["ready delay slow"], Math.round(took)), false));
     if (Sound.isOn()) lines.push(Sound.hasVoice() ? line(words["ready sound"], false, hear) : line(words["ready voice off"], false));
     if (document.fullscreenEnabled && !document.fullscreenElement) lines.push(line(words.fullscreen, false, () => document.documentElement.requestFullscreen().catch(() => {})));
     made.replaceChildren(...lines);

@@ -9,7 +9,7 @@ const Stage = (() => {
   // For so long at least it is said what the robot does, and what it has just done; it is slow once it was so for so long.
   const SAYS_MS = 1000, TOLD_MS = 2500, SLOW_MS = 1000, says = { does: null, news: "", until: 0, slowFrom: Infinity, timer: 0 };
   let pad = null, isKeyed = false, told = null, scene = null, room = null, shown = null, parts = null, words = {}, timeLeft = () => 0;
-  let marks = { lost: false, ended: false, acts: true, free: false };
+  let marks = { lost: false, ended: false, acts: true, free: false }, wasLost = false;
 
   function element(kind, className, inside = "") {
     const made = document.createElement(kind);
@@ -386,7 +386,8 @@ const Stage = (() => {
     if (sight.probe) return Probe.draw(parts.sheet, sight.probe, left, { scene, element, text, contentOf });
     Probe.end();
     const card = element("div", "card");
-    card.append(text("h1", "", scene.words[name] || ""), text("p", "", scene.words[`${name} text`] || ""));
+    card.append(text("h1", "", scene.words[name] || ""), text("p", "", scene.words[`${stage === "paused" && wasLost ? "paused lost" : name} text`] || ""));
+    if (stage === "over" && sight.served !== null) card.append(text("p", "", `✓ ${scene.words["served count"].replace("#", sight.served)}`));
     if (["welcome", "ready"].includes(stage)) card.append(Readiness.build(scene, element));
     // The kitchen is explained during the instruction, so nothing covers it.
     if (stage === "instruction") put(card, parts.free);
@@ -427,10 +428,13 @@ const Stage = (() => {
   function show(sight, left = () => 0) {
     if (!scene) return;
     timeLeft = left;
+    wasLost = wasLost && sight.stage === "paused";
     if (isNewSignal(sight)) {
       Sound.play("signal");
       Sound.say(inWords(sight.signal));
     } else if (shown && shown.signal && !sight.signal) Sound.say("");
+    // What was said is about what was asked or done then.
+    if (shown && (shown.stage !== sight.stage || shown.question?.item !== sight.question?.item)) Reason.hide();
     // During a freeze probe the program sends no contents; afterwards the kitchen is as it was.
     drawContents(sight.contents);
     drawPresses(sight);
@@ -451,6 +455,8 @@ const Stage = (() => {
 
   /** Shows whether the connection works, and whether this page takes part. */
   function mark(change) {
+    // A trial that is paused when the connection is back stands still for that.
+    wasLost = wasLost || Boolean(change.lost && shown && shown.stage !== "paused");
     marks = { ...marks, ...change };
     root.classList.toggle("lost", marks.lost);
     if (!parts) return;

@@ -14,6 +14,8 @@ const Tutorial = (() => {
   // Steps in which the robot showed all of it once, and the one in which it does so for the first time.
   const watched = new Set();
   let showing = null;
+  // How much of it was shown, and how much there is.
+  let seen = [0, 0];
   // Whether the question of a probe is practised now.
   let tries = false;
   let timer = 0, ticker = 0, hinter = 0, shownStep = "", endsAt = 0, told = () => {}, marked = [], drawn = null;
@@ -92,9 +94,18 @@ const Tutorial = (() => {
   /** Whether one can go on: what the robot shows must have been shown once. */
   const isDone = ({ done, step }) => done && showing !== step;
 
-  /** The robot begins to show something. */
-  function begins({ step }) {
-    if (!watched.has(step)) showing = step;
+  /** The robot begins to show something, which has so many parts. */
+  function begins({ step }, parts) {
+    if (!watched.has(step)) [showing, seen] = [step, [0, parts]];
+  }
+
+  /** It showed so many parts of it: the card says so, and at the end one can go on. */
+  function watch(page, parts) {
+    if (parts === seen[1]) return finish(page);
+    seen[0] = parts;
+    const line = showing && document.querySelector(".lesson .verdict.line");
+    if (line) line.textContent = wordsOf("tutorial first robot", drawn.kit.scene.words);
+    return undefined;
   }
 
   /** It showed all of it once: one can go on. */
@@ -113,15 +124,15 @@ const Tutorial = (() => {
       let said = 0;
       const say = () => {
         kit.sayOfRobot(SAYINGS[said++ % SAYINGS.length]);
-        if (said === SAYINGS.length) finish(page);
+        watch(page, said);
       };
-      begins(page);
+      begins(page, SAYINGS.length);
       say();
       sayer = setInterval(say, SAYING_MS);
     }
     if (!robot.length || !before) return;
     rested = before;
-    begins(page);
+    begins(page, robot.length);
     document.getElementById("stage").classList.add("moves");
     const start = performance.now();
     let pressed = -1;
@@ -133,7 +144,7 @@ const Tutorial = (() => {
       const now = nth + (share === 1 ? 1 : 0);
       if (now !== pressed) kit.draws(now ? robot[now - 1].contents : kit.contents);
       pressed = now;
-      if (now === robot.length || turn >= robot.length) finish(page);
+      watch(page, turn < robot.length ? now : robot.length);
     }, FRAME_MS);
   }
 
@@ -173,17 +184,21 @@ const Tutorial = (() => {
     return made;
   }
 
+  /** A line of the card; the one about what the robot shows has its count. */
+  const wordsOf = (line, words) => (line === "tutorial first robot" ? words[line].replace("#", seen[0]).replace("#", seen[1]) : words[line] || "");
+
   /** What was done, or what is still to be done, and the class of the line that says it. `isAsked`: the participant tried to go on before that. */
   function verdictOf(page, isAsked) {
     if (page.kind === "probe") return page.missed ? ["tutorial probe wrong", "wrong"] : page.done ? ["tutorial right", "right"] : ["", ""];
     const all = page.presses && page.presses[0] === page.presses[1];
     if (isAsked && page.question && page.question.wrong !== null) return ["tutorial other answer", "wrong"];
-    if (isAsked) return [`tutorial first ${page.presses ? "press" : page.question ? "question" : showing ? "robot" : "recipes"}`, "wrong"];
+    if (showing) return ["tutorial first robot", isAsked ? "wrong" : ""];
+    if (isAsked) return [`tutorial first ${page.presses ? "press" : page.question ? "question" : "recipes"}`, "wrong"];
     if (all) return ["tutorial right", "right"];
     return page.presses && page.done ? ["tutorial again", ""] : ["", ""];
   }
 
-  /** How a button is pressed: by what its badge shows, or by touch. */
+  /** How a button is pressed: by the sign on it, or by touch. */
   function howOf(words, badges) {
     if (!badges) return words["tutorial touch"];
     const shown = words[`tutorial ${badges}`];
@@ -262,7 +277,7 @@ const Tutorial = (() => {
     if (page.question) card.append(questionOf(page.question, words, element, text));
     if (page.presses) card.append(pressesOf(page, element));
     const [verdict, kind] = verdictOf(page, isAsked);
-    card.append(text("p", `verdict line ${kind}`, words[verdict] || ""), turnsOf(page, words, element, text));
+    card.append(text("p", `verdict line ${kind}`, wordsOf(verdict, words)), turnsOf(page, words, element, text));
     sheet.classList.toggle("shaded", isLarge);
     sheet.replaceChildren(card);
     fit(card, isLarge, page, kit);

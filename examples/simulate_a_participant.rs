@@ -2,7 +2,6 @@
 //!
 //! `cargo run --example simulate_a_participant --no-default-features`
 
-use std::convert::Infallible;
 use std::error::Error;
 use std::sync::Arc;
 
@@ -10,7 +9,7 @@ use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, Kitchen};
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::headless;
-use tomcom_session::{Event, SessionSpec, TimestampedEvent};
+use tomcom_session::{Event, SessionSpec};
 
 const SETTINGS: &str = r#"
 layout = "sushi.toml"
@@ -30,14 +29,11 @@ pub fn main() -> Result<(), Box<dyn Error>> {
 
     // Every event of the session, stamped with its time: the same events that a recording has.
     let mut samples = 0;
-    headless::run(&mut engine, |stamped: &TimestampedEvent| {
-        match &stamped.event {
-            Event::Gaze(_) => samples += 1,
-            Event::Press { agent, button, .. } => println!("{:>7.2} s {agent:?}: {button}", stamped.time.as_secs_f64()),
-            _ => {}
-        }
-        Ok::<(), Infallible>(())
-    })?;
+    headless::run(&mut engine, |stamped| match &stamped.event {
+        Event::Gaze(_) => samples += 1,
+        Event::Press { agent, button, .. } => println!("{:>7.2} s {agent:?}: {button}", stamped.time.as_secs_f64()),
+        _ => {}
+    });
 
     let session = engine.session();
     let presses = session.presses[Agent::Human.index()];

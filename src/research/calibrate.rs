@@ -2,7 +2,6 @@
 //! over whole studies, and searches for some that agree with it; docs/simulated-participants.md has the steps, the seeds
 //! and what came of them. What is printed, and in which order, does not depend on the number of processors.
 
-use std::convert::Infallible;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -175,7 +174,7 @@ impl Setting {
                 let (spec, trial) = study.simulated(participant, period);
                 let cost = kept.take(&self.kitchen);
                 let mut engine = SessionEngine::new(self.kitchen.clone(), spec, trial, cost).without_unused_estimate();
-                headless::run(&mut engine, |_| Ok::<(), Infallible>(())).unwrap_or_else(|never| match never {});
+                headless::run(&mut engine, |_| ());
                 rates.add(&engine);
                 kept.keep(&self.kitchen, engine.into_follower().cost);
             }

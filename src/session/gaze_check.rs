@@ -111,6 +111,7 @@ impl RunningGazeCheck {
         mistaken_coordinates(viewing, &self.targets, &self.samples)
     }
 
+    /// An uncorrected sample.
     pub(crate) fn take(&mut self, taken: SessionTime, sample: GazeSample) {
         let Some((target, since)) = self.shown else { return };
         let counts = taken.secs_since(since) >= SETTLE_S && sample.confidence >= MIN_CONFIDENCE;
@@ -190,44 +191,31 @@ pub(crate) fn admit(session: &Session, event: &GazeCheckEvent) -> Result<(), &'s
 }
 
 pub(crate) fn apply(session: &mut Session, now: SessionTime, event: &GazeCheckEvent) {
-    match event {
-        GazeCheckEvent::Begun { targets } => {
+    match (event, &mut session.calibration) {
+        (GazeCheckEvent::Begun { targets }, check) => {
             let samples = vec![Vec::new(); targets.len()];
             let targets = targets.clone();
-            session.calibration =
-                Some(RunningGazeCheck { targets, shown: None, samples, at: now, result: None, are_hidden: false });
-            return;
+            *check = Some(RunningGazeCheck { targets, shown: None, samples, at: now, result: None, are_hidden: false });
         }
-        GazeCheckEvent::Dismissed => {
-            session.calibration = None;
-            return;
-        }
-        GazeCheckEvent::Accepted { corrected } => {
-            let outcome = session.calibration.take().and_then(|check| check.result);
-            if let Some(found) = outcome.and_then(|outcome| outcome.found) {
+        (GazeCheckEvent::Dismissed, check) => *check = None,
+        (GazeCheckEvent::Accepted { corrected }, check) => {
+            if let Some(found) = check.take().and_then(|check| check.result?.found) {
                 session.calibrated = Some(AcceptedGazeCheck { at: now, found, corrected: *corrected });
             }
-            return;
         }
-        GazeCheckEvent::Carried { found, corrected } => {
+        (GazeCheckEvent::Carried { found, corrected }, _) => {
             session.calibrated = Some(AcceptedGazeCheck { at: now, found: found.clone(), corrected: *corrected });
-            return;
         }
-        _ => {}
-    }
-    let Some(check) = &mut session.calibration else { return };
-    check.at = now;
-    match event {
-        GazeCheckEvent::TargetShown { target } => check.shown = Some((*target, now)),
-        GazeCheckEvent::TargetsHidden => (check.shown, check.are_hidden) = (None, true),
-        GazeCheckEvent::Measured { found } => check.result = Some(GazeCheckResult { found: found.clone() }),
-        _ => {}
-    }
-}
-
-/// An uncorrected sample, for a running check.
-pub(crate) fn gaze(session: &mut Session, taken: SessionTime, sample: GazeSample) {
-    if let Some(check) = &mut session.calibration {
-        check.take(taken, sample);
+        (GazeCheckEvent::TargetShown { target }, Some(check)) => {
+            (check.at, check.shown) = (now, Some((*target, now)));
+        }
+        (GazeCheckEvent::TargetsHidden, Some(check)) => {
+            (check.at, check.shown, check.are_hidden) = (now, None, true);
+        }
+        (GazeCheckEvent::Measured { found }, Some(check)) => {
+            (check.at, check.result) = (now, Some(GazeCheckResult { found: found.clone() }));
+        }
+        // Such an event is not admitted without a check.
+        (_, None) => {}
     }
 }

@@ -2,7 +2,7 @@
 //! at).
 
 use crate::settings::GazeSource;
-use crate::{Session, TrialPhase, gaze_check};
+use crate::{Session, TrialPhase};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::quality::{GazeFault, GazeFaultDetector};
 use tomcom_core::gaze::{GazeSample, MIN_CONFIDENCE};
@@ -66,7 +66,9 @@ pub(crate) fn take_sample(session: &mut Session, now: SessionTime, sample: GazeS
         return;
     }
     let taken = sample.taken(now);
-    gaze_check::gaze(session, taken, sample);
+    if let Some(check) = &mut session.calibration {
+        check.take(taken, sample);
+    }
     let sample = session.corrected(sample);
     let status = &mut session.gaze;
     status.latest_unusable = (!sample.is_on_display() || sample.confidence < MIN_CONFIDENCE).then_some(sample);

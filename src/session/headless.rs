@@ -1,6 +1,7 @@
 //! Runs a session in virtual time as fast as possible, by jumping from one due event to the next; and the shards of a
 //! simulation.
 
+use std::convert::Infallible;
 use std::path::Path;
 use std::str::FromStr;
 
@@ -86,13 +87,17 @@ fn take<E>(
     Ok(())
 }
 
-/// Runs a session of one trial and passes every event to `record`, until its first error.
-pub fn run<E>(engine: &mut SessionEngine, record: impl FnMut(&TimestampedEvent) -> Result<(), E>) -> Result<(), E> {
-    run_with(engine, Outside::NOTHING, record).map(drop)
+/// Runs a session of one trial and passes every event to `note`.
+pub fn run(engine: &mut SessionEngine, mut note: impl FnMut(&TimestampedEvent)) {
+    let noted = run_with(engine, Outside::NOTHING, |stamped| {
+        note(stamped);
+        Ok::<(), Infallible>(())
+    });
+    noted.map(drop).unwrap_or_else(|never| match never {});
 }
 
-/// As [`run`], with programs of other people: an answer is waited for, and a trial whose program does not answer in time or
-/// ends is aborted.
+/// As [`run`], until the first error of `record`, and with programs of other people: an answer is waited for, and a trial whose
+/// program does not answer in time or ends is aborted.
 pub fn run_with<E>(
     engine: &mut SessionEngine,
     outside: Outside,

@@ -485,9 +485,7 @@ pub(crate) fn apply(session: &mut Session, now: SessionTime, event: &ProbeEvent)
             });
         }
         ProbeEvent::Delayed { reason, .. } => {
-            let mut waiting = take_due(session, now);
-            waiting.reason = Some(*reason);
-            session.probes.waiting = Some(waiting);
+            session.probes.waiting = Some(WaitingProbe { reason: Some(*reason), ..take_due(session, now) });
         }
         ProbeEvent::Dropped { probe, reason } => {
             session.probes.waiting = None;

@@ -3,25 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 use crate::admit::unless;
+pub use crate::plan::StudyPhase;
 use crate::plan::{PhaseSpec, PlanPosition};
 use crate::questionnaire::{AnswerValue, Questionnaire};
 use crate::tutorial::{self, TutorialEvent, TutorialState};
 use crate::wall_display::AnswerDevice;
 use crate::{Session, TrialPhase};
 use tomcom_core::base::time::SessionTime;
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
-#[serde(rename_all = "snake_case")]
-#[strum(serialize_all = "snake_case")]
-pub enum StudyPhase {
-    Instruction,
-    Tutorial,
-    /// Practice, which does not count.
-    Familiarisation,
-    Trial,
-    Questionnaire,
-    Debriefing,
-}
 
 named!(StudyPhase);
 
@@ -331,18 +319,13 @@ fn shown_item<'a>(session: &'a Session, item: &str) -> Result<&'a Questionnaire,
 }
 
 pub(crate) fn apply(session: &mut Session, event: &ProtocolEvent, now: SessionTime) {
-    let place = |item: &str| session.questionnaire().and_then(|questionnaire| questionnaire.position(item));
-    let (steps, items) = match event {
-        ProtocolEvent::PhaseStarted { number, .. } => sizes(session.spec.step.as_ref(), *number),
-        _ => (0, session.questionnaire().map_or(0, |questionnaire| questionnaire.items.len())),
-    };
-    let item = match event {
-        ProtocolEvent::ItemShown { item } => place(item),
-        _ => None,
-    };
     if let ProtocolEvent::Tutorial(event) = event {
         return tutorial::apply(session, event, now);
     }
+    let next = match event {
+        ProtocolEvent::ItemShown { item } => session.questionnaire().and_then(|asked| asked.position(item)),
+        _ => None,
+    };
     let shown = session.protocol.as_ref().and_then(|protocol| session.questionnaire()?.form(protocol.item));
     let stays = shown.is_some_and(|form| form.stays());
     let Some(protocol) = &mut session.protocol else { return };
@@ -350,8 +333,13 @@ pub(crate) fn apply(session: &mut Session, event: &ProtocolEvent, now: SessionTi
         ProtocolEvent::Tutorial(_) => {}
         ProtocolEvent::ConsentGiven { .. } => protocol.consent = true,
         ProtocolEvent::PhaseStarted { number, .. } => {
+            let phase = session.spec.step.as_ref().and_then(|step| step.phases.get(number.checked_sub(1)?));
+            let items = match phase {
+                Some(PhaseSpec::Questionnaire { questionnaire }) => questionnaire.items.len(),
+                _ => 0,
+            };
             protocol.number = *number;
-            protocol.ticks = vec![false; steps];
+            protocol.ticks = vec![false; phase.map_or(0, |phase| phase.steps().len())];
             protocol.answers = vec![None; items];
             protocol.item = 0;
             protocol.confirmed = false;
@@ -362,8 +350,8 @@ pub(crate) fn apply(session: &mut Session, event: &ProtocolEvent, now: SessionTi
                 *tick = *done;
             }
         }
-        ProtocolEvent::ItemShown { .. } => protocol.item = item.unwrap_or(0),
-        ProtocolEvent::AnswersShown => protocol.item = items,
+        ProtocolEvent::ItemShown { .. } => protocol.item = next.unwrap_or(0),
+        ProtocolEvent::AnswersShown => protocol.item = protocol.answers.len(),
         ProtocolEvent::ItemAnswered { answer, .. } => protocol.answer(ItemAnswer::Given(answer.clone()), stays),
         ProtocolEvent::ItemSkipped { .. } => protocol.answer(ItemAnswer::Skipped, false),
         ProtocolEvent::AnswersConfirmed => protocol.confirmed = true,
@@ -377,14 +365,4 @@ pub(crate) fn apply(session: &mut Session, event: &ProtocolEvent, now: SessionTi
             }
         }
     }
-}
-
-/// Numbers of steps to tick off and of questionnaire items in a phase.
-fn sizes(step: Option<&PlanPosition>, number: usize) -> (usize, usize) {
-    let phase = step.and_then(|step| step.phases.get(number.checked_sub(1)?));
-    let items = match phase {
-        Some(PhaseSpec::Questionnaire { questionnaire }) => questionnaire.items.len(),
-        _ => 0,
-    };
-    (phase.map_or(0, |phase| phase.steps().len()), items)
 }

@@ -325,8 +325,6 @@ pub enum Condition {
 
 named!(Condition, ParticipantKind, WizardVisibility, ArmKind);
 
-const LOCALHOST: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
-
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ParticipantSpec {
@@ -360,7 +358,7 @@ impl Default for ParticipantSpec {
             kind: ParticipantKind::Simulated,
             gaze: GazeSource::Simulated,
             gaze_port: 50021,
-            gaze_listen: LOCALHOST,
+            gaze_listen: IpAddr::V4(Ipv4Addr::LOCALHOST),
             gaze_from: Vec::new(),
             gaze_senders: GazeSenders::First,
             button_box: None,

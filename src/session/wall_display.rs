@@ -130,10 +130,11 @@ pub enum RobotDepiction {
 named!(RobotDepiction);
 
 /// Where answers of the participant are entered, and by whom.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AnswerDevice {
     /// The wizard reads the items out and enters the answers.
+    #[default]
     Console,
     /// The participant enters the answers; the wizard can, too.
     Display,

@@ -8,7 +8,6 @@
 //! A pool is a file of JSON Lines: a [`PoolHeader`], then one [`PoolTrial`] per line. Parts of a pool, simulated as
 //! shards, are joined.
 
-use std::convert::Infallible;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -20,6 +19,7 @@ use crate::parallel;
 use crate::study_part::ShardMismatch;
 use tomcom_core::communication::settings::ShadowMode;
 use tomcom_core::kitchen::Kitchen;
+use tomcom_session::SessionSpec;
 use tomcom_session::engine::SessionEngine;
 use tomcom_session::files::SessionSetup;
 use tomcom_session::files::file_error::{FileError, FileResult};
@@ -27,7 +27,6 @@ use tomcom_session::headless::SimulationShard;
 use tomcom_session::plan::{Participants, PrimaryOutcome, Study, StudyAims};
 use tomcom_session::settings::Condition;
 use tomcom_session::study_arm::StudyArm;
-use tomcom_session::{SessionSpec, TimestampedEvent};
 
 #[derive(Clone, Debug)]
 pub struct PoolRequest {
@@ -156,11 +155,7 @@ impl PoolStudy<'_> {
         let engine = SessionEngine::new(kitchen.clone(), spec, trial, kept.take(kitchen));
         let mut engine = engine.without_unused_estimate();
         let mut signals = SignalTimes::default();
-        let keep = |stamped: &TimestampedEvent| {
-            signals.note(stamped);
-            Ok::<(), Infallible>(())
-        };
-        tomcom_session::headless::run(&mut engine, keep).unwrap_or_else(|never| match never {});
+        tomcom_session::headless::run(&mut engine, |stamped| signals.note(stamped));
         let follower = engine.into_follower();
         let summary = TrialSummary::from_follower(&follower);
         // Simulated participants record their beliefs before every press, so false beliefs are known.

@@ -1,7 +1,5 @@
 //! Measures of whole sessions: what is known of the beliefs behind presses, and how a wizard's signals are judged.
 
-use std::convert::Infallible;
-
 use tomcom_core::kitchen::{WeightedWorlds, World};
 use tomcom_core::measures::detection::{BeliefsBeforePress, EstimateBeforePress, TrialBeliefs};
 use tomcom_core::measures::matching::WINDOW;
@@ -36,16 +34,14 @@ fn a_belief_can_be_told_from_its_witness() {
         let mut told = Vec::new();
         let mut replay =
             SessionFollower::new(Session::new(kitchen.clone(), settings(""), 0), CostToGo::new(kitchen.clone()));
-        let mut keep = |stamped: &TimestampedEvent| {
+        headless::run(&mut engine, |stamped| {
             replay.apply(stamped).expect("what was recorded can be replayed");
             if let Event::ParticipantBelieves(witness) = &stamped.event {
                 let state = replay.session.state;
                 told.push((state, Belief::of_witness(&kitchen, state, witness).expect("a belief of this kitchen")));
                 witnesses.push(witness.clone());
             }
-            Ok::<(), Infallible>(())
-        };
-        headless::run(&mut engine, &mut keep).unwrap_or_else(|never| match never {});
+        });
         assert!(told.len() > 100);
         for ((state, belief), witness) in told.iter().zip(&witnesses) {
             for (index, held) in witness.aspects.iter().enumerate() {
@@ -145,11 +141,10 @@ fn a_running_session_judges_the_wizards_signals_as_compare_does() {
     let mut live = SessionFollower::new(start(), CostToGo::new(kitchen.clone())).without_causes();
     let request = SenderComparisonSettings { with: Vec::new(), window: WINDOW };
     let mut compare = SenderComparisonFollower::new(start(), CostToGo::new(kitchen.clone()), &request);
-    let mut follow = |stamped: &TimestampedEvent| {
+    headless::run(&mut engine, |stamped| {
         live.apply(stamped).expect("what was recorded can be replayed");
-        compare.apply(stamped).map(drop)
-    };
-    headless::run(&mut engine, &mut follow).expect("what was recorded can be compared");
+        compare.apply(stamped).expect("what was recorded can be compared");
+    });
     let at_console = WizardSummary::from_follower(&live).measures;
     let compared = RecordingSenderComparison::new("S001".to_string(), compare, ExclusionStatus::default());
     let compared = compared.wizard.expect("a wizard's trial");

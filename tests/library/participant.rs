@@ -1,7 +1,5 @@
 //! Participants: populations that err at the rates of people, the vectors that the calibration accepted, and codes.
 
-use std::convert::Infallible;
-
 use serde::Deserialize;
 use tomcom_core::measures::attribution::ErrorCause;
 use tomcom_session::files::parse::parse;
@@ -37,13 +35,11 @@ fn play(kitchen: &Arc<Kitchen>, seed: u64, trials: u64) -> Figures {
     for trial in 0..trials {
         let mut engine = SessionEngine::new(kitchen.clone(), settings(seed), trial, cost.clone());
         let mut events: Vec<TimestampedEvent> = Vec::new();
-        let keep = |stamped: &TimestampedEvent| {
+        headless::run(&mut engine, |stamped| {
             if !matches!(stamped.event, Event::Gaze(_)) {
                 events.push(stamped.clone());
             }
-            Ok::<(), Infallible>(())
-        };
-        headless::run(&mut engine, keep).unwrap_or_else(|never| match never {});
+        });
         measure(&engine, &events, &mut figures);
     }
     figures

@@ -6,7 +6,6 @@ pub mod report;
 pub mod table;
 
 use std::collections::BTreeMap;
-use std::convert::Infallible;
 use std::sync::Arc;
 
 use tomcom_core::kitchen::Kitchen;
@@ -118,11 +117,7 @@ fn simulate(
 ) -> (Vec<TimestampedEvent>, SessionFollower) {
     let mut engine = SessionEngine::new(kitchen.clone(), spec, trial, cost);
     let mut events = Vec::new();
-    let keep = |stamped: &TimestampedEvent| {
-        events.push(stamped.clone());
-        Ok::<(), Infallible>(())
-    };
-    headless::run(&mut engine, keep).unwrap_or_else(|never| match never {});
+    headless::run(&mut engine, |stamped| events.push(stamped.clone()));
     (events, engine.into_follower())
 }
 

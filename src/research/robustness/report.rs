@@ -4,7 +4,6 @@
 use tomcom_core::base::text::{count, decimal};
 use tomcom_core::measures::flags::MOST_FALSE_FLAGS;
 use tomcom_study::charts::{PlotAxis, SvgChart, document};
-use tomcom_study::report::STYLE;
 
 use super::table::{CohortRow, RobustnessTable};
 
@@ -127,7 +126,7 @@ pub fn chart(table: &RobustnessTable) -> String {
             }
         }
     }
-    document(&chart.finish("Estimate and assistant for each cohort"), STYLE)
+    document(&chart.finish("Estimate and assistant for each cohort"))
 }
 
 /// A cohort's name in lines that are short enough for its column, where its words are.

@@ -46,12 +46,11 @@ pub(super) fn simulated_participant(kitchen: Arc<Kitchen>, spec: &SessionSpec, t
 }
 
 pub(super) fn scripted_wizard(kitchen: &Arc<Kitchen>, spec: &SessionSpec, trial: u64) -> Option<ScriptedWizard> {
-    let (highlights, seed) = (spec.highlights(kitchen), spec.seed);
     if !spec.scripts_wizard() {
         return None;
     }
-    let script = ScriptedWizard::new(kitchen.clone(), spec.wizard.clone(), highlights, seed, trial);
-    Some(if spec.script_reads_offers() { script.reading_offers(seed, trial) } else { script })
+    let script = ScriptedWizard::new(kitchen.clone(), spec.wizard.clone(), spec.highlights(kitchen), spec.seed, trial);
+    Some(if spec.script_reads_offers() { script.reading_offers(spec.seed, trial) } else { script })
 }
 
 pub(super) fn gaze_gaps(spec: &SessionSpec, trial: u64) -> Option<GazeDropoutSchedule> {

@@ -10,7 +10,7 @@ use super::happenings::Happening;
 use super::kitchen_description::{describe, true_values};
 use super::{
     DialogueOutcome, ExternalEvent, MOST_FAULTS, MindDialogue, MindFault, MindRole, PROTOCOL, ToldBelief, check_belief,
-    recorded_text,
+    malformed, parsed, recorded_text,
 };
 use crate::advisor::AdviceRequest;
 use crate::{Event, Session};
@@ -71,10 +71,10 @@ struct ToldRobot {
 /// The answer to the first question.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct BeginAnswer {
-    pub id: u64,
-    pub protocol: u32,
-    pub name: String,
+struct BeginAnswer {
+    id: u64,
+    protocol: u32,
+    name: String,
 }
 
 /// An answer to a question for advice: a value for each signal in their order, or the signal to send, or neither.
@@ -107,7 +107,7 @@ struct PendingQuestion {
     signals: Vec<Signal>,
 }
 
-/// The dialogue of one session with its external concept. It has no connection: it makes lines, and takes lines.
+/// The dialogue of one session with its external concept.
 #[derive(Clone, Debug)]
 pub struct ConceptDialogue {
     kitchen: Arc<Kitchen>,
@@ -138,7 +138,7 @@ impl MindDialogue for ConceptDialogue {
             return DialogueOutcome::default();
         }
         self.is_over |= fault.is_final();
-        let event = self.fault(fault, recorded_text(found));
+        let event = self.fault(fault, found);
         self.after(vec![event])
     }
 }
@@ -221,7 +221,7 @@ impl ConceptDialogue {
             return Vec::new();
         }
         self.silent = Some((since, true));
-        vec![self.fault(MindFault::Silent, format!("no answer for {:.0} s", now.secs_since(since)))]
+        vec![self.fault(MindFault::Silent, &format!("no answer for {:.0} s", now.secs_since(since)))]
     }
 
     /// The events of a line that came back.
@@ -230,7 +230,7 @@ impl ConceptDialogue {
             return DialogueOutcome::default();
         }
         let taken = if self.began { self.answer(text) } else { self.introduced(text) };
-        let events = taken.unwrap_or_else(|(fault, found)| vec![self.fault(fault, found)]);
+        let events = taken.unwrap_or_else(|(fault, found)| vec![self.fault(fault, &found)]);
         self.after(events)
     }
 
@@ -238,14 +238,14 @@ impl ConceptDialogue {
     fn after(&mut self, mut events: Vec<Event>) -> DialogueOutcome {
         if self.faults >= MOST_FAULTS && !self.is_over {
             self.is_over = true;
-            events.push(self.fault(MindFault::GivenUp, format!("{MOST_FAULTS} faults")));
+            events.push(self.fault(MindFault::GivenUp, &format!("{MOST_FAULTS} faults")));
         }
         DialogueOutcome { events, ends: self.is_over }
     }
 
-    fn fault(&mut self, fault: MindFault, found: String) -> Event {
+    fn fault(&mut self, fault: MindFault, found: &str) -> Event {
         self.faults += 1;
-        Event::External(ExternalEvent::Fault { role: MindRole::Concept, fault, found })
+        Event::External(ExternalEvent::Fault { role: MindRole::Concept, fault, found: recorded_text(found) })
     }
 
     fn introduced(&mut self, text: &str) -> Result<Vec<Event>, (MindFault, String)> {
@@ -255,10 +255,9 @@ impl ConceptDialogue {
     }
 
     fn answer(&mut self, text: &str) -> Result<Vec<Event>, (MindFault, String)> {
-        let malformed = |found: String| (MindFault::Malformed, recorded_text(&found));
         // Whatever it says, it is not silent.
         self.silent = None;
-        let AnswerId { id } = serde_json::from_str(text).map_err(|error| malformed(format!("{error} in {text}")))?;
+        let AnswerId { id } = parsed(text)?;
         if let Some(for_seq) = self.unanswered.remove(&id) {
             let (role, answer) = (MindRole::Concept, recorded_text(text));
             return Ok(vec![Event::External(ExternalEvent::Late { role, for_seq, answer })]);
@@ -267,8 +266,7 @@ impl ConceptDialogue {
             return Err((MindFault::Unasked, format!("an answer to question {id}")));
         };
         self.unanswered.clear();
-        let answer: ConceptAnswer =
-            serde_json::from_str(text).map_err(|error| malformed(format!("{error} in {text}")))?;
+        let answer: ConceptAnswer = parsed(text)?;
         if let Some(belief) = &answer.belief {
             check_belief(&self.kitchen, belief).map_err(malformed)?;
         }
@@ -312,14 +310,13 @@ impl ConceptDialogue {
 
 /// The program's name from its answer to the first question.
 pub(super) fn introduction(text: &str) -> Result<String, (MindFault, String)> {
-    let wrong = |found: String| (MindFault::Malformed, recorded_text(&found));
     let answer: BeginAnswer = serde_json::from_str(text)
-        .map_err(|error| wrong(format!("{error} in the answer to the first question: {text}")))?;
+        .map_err(|error| malformed(format!("{error} in the answer to the first question: {text}")))?;
     if answer.id != 0 {
         return Err((MindFault::Unasked, format!("an answer to question {}, before the first", answer.id)));
     }
     if answer.protocol != PROTOCOL {
-        return Err(wrong(format!("protocol {}; right would be {PROTOCOL}", answer.protocol)));
+        return Err(malformed(format!("protocol {}; right would be {PROTOCOL}", answer.protocol)));
     }
     Ok(recorded_text(&answer.name))
 }

@@ -15,6 +15,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::time::Duration;
 
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::{Event, Session};
@@ -206,6 +207,15 @@ fn check_belief(kitchen: &Kitchen, belief: &ToldBelief) -> Result<(), String> {
         }
     }
     Ok(())
+}
+
+/// An answer that is none of the protocol, for this reason.
+fn malformed(found: String) -> (MindFault, String) {
+    (MindFault::Malformed, found)
+}
+
+fn parsed<Answer: DeserializeOwned>(text: &str) -> Result<Answer, (MindFault, String)> {
+    serde_json::from_str(text).map_err(|error| malformed(format!("{error} in {text}")))
 }
 
 /// Text of an answer as it is recorded: one line, of limited length.

@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::concept::{AnswerId, introduction, line};
 use super::{
     DialogueOutcome, ExternalEvent, MOST_FAULTS, MindDialogue, MindFault, MindRole, PROTOCOL, ToldBelief, check_belief,
-    recorded_text,
+    malformed, parsed, recorded_text,
 };
 use crate::{Event, Session};
 use tomcom_core::base::time::SessionTime;
@@ -60,7 +60,7 @@ struct NextMove {
     press: Option<(String, Option<ToldBelief>)>,
 }
 
-/// The dialogue of one session with its external participant. It has no connection: it makes lines, and takes lines.
+/// The dialogue of one session with its external participant.
 #[derive(Clone, Debug)]
 pub struct ParticipantDialogue {
     mind: ExternalMind,
@@ -207,13 +207,11 @@ impl ParticipantDialogue {
     }
 
     fn next_move(&self, session: &Session, text: &str) -> Result<Option<NextMove>, (MindFault, String)> {
-        let malformed = |found: String| (MindFault::Malformed, found);
-        let AnswerId { id } = serde_json::from_str(text).map_err(|error| malformed(format!("{error} in {text}")))?;
+        let AnswerId { id } = parsed(text)?;
         if id != self.asked || !self.waits {
             return Err((MindFault::Unasked, format!("an answer to question {id}")));
         }
-        let answer: ParticipantAnswer =
-            serde_json::from_str(text).map_err(|error| malformed(format!("{error} in {text}")))?;
+        let answer: ParticipantAnswer = parsed(text)?;
         if answer.after_s.is_some_and(|after_s| !(0.0..=LONGEST_S).contains(&after_s)) {
             return Err(malformed(format!("after_s that is not from 0 to {LONGEST_S}")));
         }

@@ -154,8 +154,13 @@ fn read_tutorial(session: &Path, text: &str, spec: &SessionSpec, kitchen: &Kitch
     check_there(&path, session, text, ("plan.tutorial", 0, file), remedy)?;
     let text = read_text(&path)?;
     let mut tutorial: Tutorial = parse(&path, &text)?;
-    let checked = tutorial.check().and_then(|()| tutorial.check_kitchen(kitchen));
-    checked.map_err(|error| wrong_setting(&path, &text, error))?;
+    tutorial.check().map_err(|error| wrong_setting(&path, &text, error))?;
+    tutorial.check_kitchen(kitchen).map_err(|error| {
+        let found =
+            format!("{}, in a tutorial that does not fit the kitchen \"{}\" of the session", error.found, kitchen.name);
+        let remedy = format!("{}; or, in {}, a tutorial of this kitchen", error.remedy, session.display());
+        wrong_setting(&path, &text, SettingError { found, remedy: remedy.into(), ..error })
+    })?;
     tutorial.steps.retain(|step| step.kind != TutorialStepKind::Probe || spec.probes.is_some());
     Ok(Some(tutorial))
 }

@@ -8,7 +8,7 @@ use crate::files::file_error::{FileError, FileResult, MAX_TEXT, read_bytes};
 use crate::files::replace_file;
 use crate::log::RecordingWriteError;
 use crate::log::decisions::check_single;
-use crate::log::rater_codes::{code_of, rows, table_bytes, text_of, wrong_line};
+use crate::log::rater_codes::{cells, code_of, rows, table_bytes, text_of, wrong_line};
 use crate::person_code;
 use tomcom_core::measures::raters::{CodableErrors, ConsensusCode, ErrorCauseCode, RaterConsensus};
 
@@ -66,15 +66,10 @@ fn own(cause: &str, aspect: &str) -> Result<Option<ErrorCauseCode>, (String, &'s
 
 /// Programs that read the file meanwhile find the old one or the new one.
 pub fn write(folder: &Path, consensus: &RaterConsensus) -> Result<(), RecordingWriteError> {
-    let fields = |code: &Option<ErrorCauseCode>| {
-        let kind = code.as_ref().map_or("", |code| code.kind().name());
-        let aspect = code.as_ref().and_then(ErrorCauseCode::aspect).unwrap_or_default();
-        [kind.to_string(), aspect.to_string()]
-    };
     let rows = consensus.settled.iter().map(|(press, settled)| {
         let [one, other] = consensus.raters.clone();
-        let [[cause_1, aspect_1], [cause_2, aspect_2]] = settled.from.each_ref().map(fields);
-        let [cause, aspect] = fields(&Some(settled.code.clone()));
+        let from = settled.from.each_ref().map(|code| code.as_ref().map(cells).unwrap_or_default());
+        let ([[cause_1, aspect_1], [cause_2, aspect_2]], [cause, aspect]) = (from, cells(&settled.code));
         [one, cause_1, aspect_1, other, cause_2, aspect_2, press.to_string(), cause, aspect]
     });
     let path = folder.join(CONSENSUS_NAME);

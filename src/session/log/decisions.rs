@@ -2,16 +2,17 @@
 //! of a closed recording is never changed. All decisions of a file are kept, and the last one holds.
 
 use std::fs;
-use std::io::{BufReader, ErrorKind};
+use std::io::ErrorKind;
 use std::path::Path;
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use crate::files::file_error::{FileError, FileResult, open_regular, read_regular};
+use crate::files::file_error::{FileError, FileResult, read_regular};
 use crate::files::{WallTime, replace_file};
 use crate::header::CodeCorrection;
-use crate::log::{LOG_NAME, LogReader, RecordingLock, RecordingWriteError, check_continued, first_line, read_header};
+use crate::log::reader::first_line_of;
+use crate::log::{LOG_NAME, LogReader, RecordingLock, RecordingWriteError, check_continued, read_header};
 use crate::{Event, LogHeader, person_code};
 
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -182,7 +183,7 @@ pub const CORRECTION_NAME: &str = "correction.toml";
 #[serde(deny_unknown_fields)]
 struct Corrections {
     #[serde(default)]
-    pub correction: Vec<CodeCorrection>,
+    correction: Vec<CodeCorrection>,
 }
 
 fn corrections(folder: &Path) -> FileResult<Corrections> {
@@ -258,7 +259,7 @@ fn differing_neighbour(recording: &Path, own: &[&Path], code: &str) -> Option<(S
     let neighbours = fs::read_dir(recording.parent()?).ok()?.flatten();
     neighbours.filter(|entry| !is_own(&entry.path())).find_map(|entry| {
         let log = entry.path().join(LOG_NAME);
-        let line = open_regular(&log).and_then(|file| first_line(&mut BufReader::new(file))).ok()?;
+        let line = first_line_of(&log).ok()?;
         let other = read_header(&log, String::from_utf8_lossy(&line).trim_end()).ok()?.session.participant.code;
         person_code::differing_in_case(code, [other.as_str()])?;
         Some((entry.file_name().to_string_lossy().into_owned(), other))

@@ -165,11 +165,16 @@ pub fn read_all(folder: &Path, codable: &CodableErrors) -> FileResult<BTreeMap<S
 pub fn write(folder: &Path, rater: &str, codes: &RaterCodes) -> Result<(), RecordingWriteError> {
     let path = folder.join(file_name(rater));
     let row = |(press, code): (&u64, &ErrorCauseCode)| {
-        let aspect = code.aspect().unwrap_or_default();
-        [rater.to_string(), press.to_string(), code.kind().name().to_string(), aspect.to_string()]
+        let [cause, aspect] = cells(code);
+        [rater.to_string(), press.to_string(), cause, aspect]
     };
     let written = table_bytes(COLUMNS, codes.0.iter().map(row)).and_then(|bytes| replace_file::replace(&path, &bytes));
     written.map_err(|reason| RecordingWriteError::unwritable(&path, reason))
+}
+
+/// Cause and aspect of a code.
+pub(super) fn cells(code: &ErrorCauseCode) -> [String; 2] {
+    [code.kind().name().to_string(), code.aspect().unwrap_or_default().to_string()]
 }
 
 /// A table with these columns and rows, as CSV.
@@ -212,8 +217,8 @@ pub fn write_export(path: &Path, rows: &[RaterCodeRow]) -> FileResult<()> {
     let is_own = |head: &[u8]| overwrite::first_line(head) == EXPORT_COLUMNS.join(",").as_bytes();
     overwrite::check(path, "an export of raters' codes", is_own).map_err(failed)?;
     let row = |RaterCodeRow { recording, rater, press, code, .. }: &RaterCodeRow| {
-        let (kind, aspect) = (code.kind().name().to_string(), code.aspect().unwrap_or_default().to_string());
-        [recording.clone(), rater.clone(), press.to_string(), kind, aspect]
+        let [cause, aspect] = cells(code);
+        [recording.clone(), rater.clone(), press.to_string(), cause, aspect]
     };
     let written = table_bytes(EXPORT_COLUMNS, rows.iter().map(row)).and_then(|bytes| overwrite::write(path, &bytes));
     written.map_err(failed)
@@ -286,7 +291,9 @@ pub(super) fn rows(path: &Path, text: &str, columns: &[&str]) -> FileResult<Vec<
         if let Some(cell) = record.iter().skip(columns.len()).find(|cell| !cell.is_empty()) {
             return Err(wrong((format!("\"{cell}\" beyond the last column"), "empty cells in columns without a name")));
         }
-        let (press, code) = said(field(3), field(2), field(1)).map_err(wrong)?;
+        let not_a_number = |_| (format!("the press \"{}\"", field(3)), "the number of the press in its log");
+        let press = field(3).parse::<u64>().map_err(not_a_number).map_err(wrong)?;
+        let code = code_of(field(2), field(1)).map_err(wrong)?;
         if let Some(first) = lines.insert((before.clone(), press), line) {
             let found = format!("press {press} again, after line {first}");
             return Err(wrong((found, "one line for a press, of each rater")));
@@ -297,12 +304,6 @@ pub(super) fn rows(path: &Path, text: &str, columns: &[&str]) -> FileResult<Vec<
 }
 
 /// The error: what was found and what would be valid.
-fn said(press: &str, cause: &str, aspect: &str) -> Result<(u64, ErrorCauseCode), (String, &'static str)> {
-    let number = press.parse();
-    let number = number.map_err(|_| (format!("the press \"{press}\""), "the number of the press in its log"))?;
-    Ok((number, code_of(cause, aspect)?))
-}
-
 pub(super) fn code_of(cause: &str, aspect: &str) -> Result<ErrorCauseCode, (String, &'static str)> {
     let kind = ErrorCauseKind::named(cause);
     let near = || did_you_mean(cause, ErrorCauseKind::ALL.map(ErrorCauseKind::name));

@@ -363,6 +363,11 @@ pub fn first_line(log: &mut impl BufRead) -> io::Result<Vec<u8>> {
     log.take(MAX_LINE as u64).read_until(b'\n', &mut line).map(|_| line)
 }
 
+/// That of the log in this file.
+pub(super) fn first_line_of(path: &Path) -> io::Result<Vec<u8>> {
+    open_regular(path).and_then(|file| first_line(&mut BufReader::new(file)))
+}
+
 /// An error in one line of a long file; the excerpt in the message keeps the line's number.
 pub fn at_line(
     path: &Path,

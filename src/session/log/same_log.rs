@@ -11,15 +11,14 @@ use sha2::{Digest, Sha256};
 use crate::files::file_error::{FileError, FileResult, open_regular};
 use crate::log::consensus_file::CONSENSUS_NAME;
 use crate::log::rater_codes::code_file_names;
-use crate::log::reader::{MAX_LINE, first_line, is_blank};
+use crate::log::reader::{MAX_LINE, first_line_of, is_blank};
 
 const REMEDY: &str = "a readable recording";
 
 /// SHA-256 of a log's header without its line end, in hexadecimal. Each session has a header of its own, so only copies
 /// have the same.
 pub fn header_digest(log: &Path) -> FileResult<String> {
-    let line = open_regular(log).and_then(|file| first_line(&mut BufReader::new(file)));
-    let line = line.map_err(|reason| FileError::unreadable(log, reason, REMEDY))?;
+    let line = first_line_of(log).map_err(|reason| FileError::unreadable(log, reason, REMEDY))?;
     Ok(Sha256::digest(line.trim_ascii_end()).iter().map(|byte| format!("{byte:02x}")).collect())
 }
 

@@ -3,12 +3,11 @@
 //! written by one of them.
 
 use std::fs;
-use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-use crate::files::file_error::{open_regular, read_regular};
+use crate::files::file_error::read_regular;
 use crate::log::lock::RecordingLock;
-use crate::log::reader::{ends_in_header, first_line};
+use crate::log::reader::{ends_in_header, first_line_of};
 use crate::log::writer::is_written_settings;
 use crate::log::{LOG_NAME, LogReader, LogWriter, RecordingWriteError, SETTINGS_NAME, move_aside};
 use crate::{Event, LogHeader};
@@ -70,8 +69,7 @@ pub fn check_simulated(folder: &Path, header: &LogHeader) -> Result<(), Recordin
 }
 
 fn is_without_header(path: &Path) -> bool {
-    let line = open_regular(path).and_then(|file| first_line(&mut BufReader::new(file)));
-    line.is_ok_and(|line| ends_in_header(&line))
+    first_line_of(path).is_ok_and(|line| ends_in_header(&line))
 }
 
 /// Whether the folder contains the complete recording with this header.

@@ -75,7 +75,10 @@ impl LogWriter {
         replace_file::put(&folder.join(SETTINGS_NAME), settings.as_bytes()).map_err(failed)?;
         // The log file is opened for reading, too, since it has to be read if its folder vanishes.
         let (file, begun) = new_beside(&path).map_err(failed)?.into_parts();
-        let file = if prompt { GuardedFile::guarded(file, &folder) } else { GuardedFile::unguarded(file) };
+        // The guarding copy is in the system's folder for temporary files, or else beside the log.
+        let temporary = || tempfile::tempfile().or_else(|_| tempfile::tempfile_in(&folder)).ok();
+        let copy = if prompt { temporary() } else { None };
+        let file = GuardedFile { file, copy, length: 0, next: 0, pass_end: 0 };
         let mut out = BufWriter::with_capacity(1 << 16, file);
         line(header).and_then(|line| out.write_all(&line)).and_then(|()| out.flush()).map_err(failed)?;
         begun.persist(&path).map_err(|error| failed(error.error))?;
@@ -298,16 +301,6 @@ impl Write for GuardedFile {
 }
 
 impl GuardedFile {
-    fn unguarded(file: File) -> GuardedFile {
-        GuardedFile { file, copy: None, length: 0, next: 0, pass_end: 0 }
-    }
-
-    /// The copy is in the system's folder for temporary files, or else in this folder.
-    fn guarded(file: File, folder: &Path) -> GuardedFile {
-        let copy = tempfile::tempfile().or_else(|_| tempfile::tempfile_in(folder)).ok();
-        GuardedFile { copy, ..GuardedFile::unguarded(file) }
-    }
-
     /// Compares the length, the end and the next stretch of the log with what was written, or the whole log; returns
     /// the damage in words.
     fn damage(&mut self, whole: bool) -> Option<String> {

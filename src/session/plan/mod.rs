@@ -17,7 +17,6 @@ pub use crate::plan::study::{
     NextRecording, ParticipantProgress, PhaseStand, PlanRecording, PlannedTrial, PlannedTrialProgress,
     RecordingOutcome, Study, TrialAttempt, WantedRecording,
 };
-use crate::protocol::StudyPhase;
 pub use crate::questionnaire::{
     AnswerFormat, ItemOption, Questionnaire, QuestionnaireItem, QuestionnaireItemKind, RatingScale, SLIDER_END,
     ScoreRule,
@@ -47,7 +46,7 @@ pub struct PlanSpec {
     #[serde(default = "default_consent")]
     pub consent: String,
     /// By holding a button on the display, or by telling the wizard, who confirms it at the console.
-    #[serde(default = "on_console")]
+    #[serde(default)]
     pub consent_on: AnswerDevice,
     /// Steps of the wizard.
     #[serde(default)]
@@ -67,10 +66,6 @@ pub struct PlanSpec {
 
 fn default_consent() -> String {
     "The participant was told what is recorded and for what it is used, and agrees to it.".to_string()
-}
-
-fn on_console() -> AnswerDevice {
-    AnswerDevice::Console
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -181,28 +176,24 @@ impl PlanSpec {
 
     fn check_participants(&self) -> Result<(), SettingError> {
         let wrong = |found: String, remedy| Err(SettingError::new("plan.participants", found, remedy));
-        match &self.participants {
-            Participants::Count(_) => Ok(()),
-            Participants::Codes(codes) if codes.is_empty() => {
-                wrong("no participants".to_string(), "how many there are, or a list of their codes")
+        let Participants::Codes(codes) = &self.participants else { return Ok(()) };
+        if codes.is_empty() {
+            return wrong("no participants".to_string(), "how many there are, or a list of their codes");
+        }
+        for (index, code) in codes.iter().enumerate() {
+            let before = &codes[..index];
+            if let Some(fault) = person_code::fault(code) {
+                return wrong(format!("the code \"{code}\": {fault}"), person_code::REMEDY);
             }
-            Participants::Codes(codes) => {
-                for (index, code) in codes.iter().enumerate() {
-                    let before = &codes[..index];
-                    if let Some(fault) = person_code::fault(code) {
-                        return wrong(format!("the code \"{code}\": {fault}"), person_code::REMEDY);
-                    }
-                    if before.contains(code) {
-                        return wrong(format!("the code \"{code}\" twice"), "each code once");
-                    }
-                    if let Some(other) = person_code::differing_in_case(code, before.iter().map(String::as_str)) {
-                        let found = format!("the codes \"{other}\" and \"{code}\"");
-                        return wrong(found, "codes that differ in more than capital letters");
-                    }
-                }
-                Ok(())
+            if before.contains(code) {
+                return wrong(format!("the code \"{code}\" twice"), "each code once");
+            }
+            if let Some(other) = person_code::differing_in_case(code, before.iter().map(String::as_str)) {
+                let found = format!("the codes \"{other}\" and \"{code}\"");
+                return wrong(found, "codes that differ in more than capital letters");
             }
         }
+        Ok(())
     }
 }
 
@@ -352,8 +343,11 @@ impl PracticeCriterion {
     }
 }
 
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, strum::EnumDiscriminants)]
 #[serde(tag = "what", rename_all = "snake_case", deny_unknown_fields)]
+#[strum_discriminants(name(StudyPhase), doc = "The kind of a phase.")]
+#[strum_discriminants(derive(Serialize, Deserialize, strum::IntoStaticStr))]
+#[strum_discriminants(serde(rename_all = "snake_case"), strum(serialize_all = "snake_case"))]
 pub enum PhaseSpec {
     Instruction {
         steps: Vec<String>,
@@ -374,14 +368,7 @@ pub enum PhaseSpec {
 
 impl PhaseSpec {
     pub fn phase(&self) -> StudyPhase {
-        match self {
-            PhaseSpec::Instruction { .. } => StudyPhase::Instruction,
-            PhaseSpec::Tutorial { .. } => StudyPhase::Tutorial,
-            PhaseSpec::Familiarisation => StudyPhase::Familiarisation,
-            PhaseSpec::Trial => StudyPhase::Trial,
-            PhaseSpec::Questionnaire { .. } => StudyPhase::Questionnaire,
-            PhaseSpec::Debriefing { .. } => StudyPhase::Debriefing,
-        }
+        self.into()
     }
 
     /// Steps that the wizard ticks off.

@@ -7,7 +7,9 @@ use serde::Serialize;
 
 use crate::SessionSpec;
 use crate::plan::difference::what_can_change_a_trial;
-use crate::plan::{PhaseSpec, PlanPosition, PlanSpec, PracticeCriterion, StartingGroup, TUTORIAL_ALONE};
+use crate::plan::{
+    FamiliarisationSpec, PhaseSpec, PlanPosition, PlanSpec, PracticeCriterion, StartingGroup, TUTORIAL_ALONE,
+};
 use crate::protocol::ProtocolEvent;
 use crate::questionnaire::Questionnaire;
 use crate::settings::{GazeSource, ParticipantKind, WizardVisibility};
@@ -91,10 +93,9 @@ impl Study {
         practice.into_iter().chain(trials).map(|(period, condition)| PlannedTrial { period, condition }).collect()
     }
 
-    /// After which a planned trial ends, of both agents.
-    fn presses(&self, slot: PlannedTrial) -> u32 {
-        let practice = self.plan.familiarisation.as_ref().filter(|_| slot.period.is_none());
-        practice.map_or(self.session.trial.presses, |practice| practice.presses)
+    /// Settings of the familiarisation, if the planned trial is one.
+    fn practice(&self, slot: PlannedTrial) -> Option<&FamiliarisationSpec> {
+        self.plan.familiarisation.as_ref().filter(|_| slot.period.is_none())
     }
 
     /// Of a recording with people, and the number of its trial.
@@ -104,7 +105,7 @@ impl Study {
         let mut spec = self.session.clone();
         spec.participant.code = self.plan.code(wanted.participant);
         set_arm(&mut spec, slot.condition);
-        let practice = self.plan.familiarisation.as_ref().filter(|_| slot.period.is_none());
+        let practice = self.practice(slot);
         if let Some(practice) = practice {
             spec.trial.presses = practice.presses;
             spec.trial.seconds = practice.seconds;
@@ -382,29 +383,24 @@ pub struct PlannedTrialProgress {
     pub recordings: Vec<TrialAttempt>,
 }
 
+/// A recording of a planned trial; [`PlanRecording`] and [`PhaseStand`] say what the fields mean.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrialAttempt {
-    /// Name of its folder; of several parts, the last one's.
     pub recording: String,
     pub attempt: u32,
-    /// Of both agents in the trial, while it ran.
     pub presses: u32,
     pub trial_over: bool,
-    /// Whether the wizard ended the trial, before its presses and its time.
     pub ended_by_wizard: bool,
     /// How far the recording is, in words.
     #[serde(skip)]
     pub ended_where: String,
-    /// Why the practice criterion was waived, if it was.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub waived: Option<String>,
-    /// Why the recording is left out of the analysis, whatever else is true of it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub excluded: Option<String>,
     pub outcome: RecordingOutcome,
     /// Whether it was recorded under another version of the plan.
     pub other_version: bool,
-    /// The code in the log, if it was corrected afterwards.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub recorded_as: Option<String>,
     /// If it is not that of the plan for this participant.
@@ -508,13 +504,14 @@ impl PlannedTrialProgress {
         let mut here: Vec<&PlanRecording> =
             own.iter().filter(|made| made.step.period == slot.period).copied().collect();
         here.sort_by(|a, b| (a.step.attempt, &a.recording).cmp(&(b.step.attempt, &b.recording)));
+        let planned = study.practice(slot).map_or(study.session.trial.presses, |practice| practice.presses);
         let attempt = |made: &&PlanRecording| TrialAttempt {
             recording: made.recording.clone(),
             attempt: made.step.attempt,
             presses: made.presses,
             trial_over: made.stand.trial_over,
             ended_by_wizard: made.stand.ended_by_wizard,
-            ended_where: made.ended_where(study.presses(slot)),
+            ended_where: made.ended_where(planned),
             waived: made.waived.clone(),
             excluded: made.excluded.clone(),
             outcome: made.outcome.clone(),

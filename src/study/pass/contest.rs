@@ -6,6 +6,7 @@ use std::path::Path;
 use crate::analysis::trial_summary::TrialSummary;
 use crate::kept_cost::KeptCost;
 use crate::pass::sweep::useful_signals;
+use crate::statistics::mean;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_core::measures::detection::{CALIBRATED, CALIBRATION_BINS, Calibration, EstimateBeforePress};
 use tomcom_core::measures::detection::{aspect_groups, auc};
@@ -34,8 +35,7 @@ impl BeliefScores {
             let scores = all.iter().filter(|(aspect, ..)| group.contains(aspect));
             auc(&scores.map(|&(_, p_false, is_false)| (p_false, is_false)).collect::<Vec<_>>())
         };
-        let areas: Vec<f64> = aspect_groups(kitchen).iter().filter_map(of).collect();
-        let area = (!areas.is_empty()).then(|| areas.iter().sum::<f64>() / areas.len() as f64);
+        let area = mean(aspect_groups(kitchen).iter().filter_map(of));
         let predictions = all.iter().map(|&(_, p_false, is_false)| (p_false, is_false));
         (area, Calibration::from_predictions(predictions, CALIBRATED, CALIBRATION_BINS).ece)
     }

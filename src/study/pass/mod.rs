@@ -58,9 +58,7 @@ pub struct AnalysisRequest {
     pub paths: Vec<PathBuf>,
     /// The folder for tables and report, or the file of a part of the study.
     pub out: PathBuf,
-    pub extent: AnalysisScope,
-    /// The two raters whose codes are used; `None`: the only two, or for each recording the two with the most complete codes.
-    pub raters: Option<[String; 2]>,
+    pub scope: AnalysisScope,
     pub frozen: Option<PathBuf>,
 }
 
@@ -102,7 +100,7 @@ impl NamedRecordings {
         for (path, _) in &self.found {
             raters.extend(rater_codes::raters(LogReader::open(path)?.folder())?);
         }
-        match &analysis.raters {
+        match &analysis.scope.raters {
             Some(named) => {
                 rater_codes::check_named(Path::new("--raters"), named, &raters).map(|()| Some(named.clone()))
             }
@@ -166,20 +164,20 @@ pub fn study(
     recordings: &NamedRecordings,
     done: impl Fn() + Sync,
 ) -> Result<(StudySummary, PathBuf), StudyError> {
-    let raters = recordings.raters(analysis)?;
+    let scope = AnalysisScope { raters: recordings.raters(analysis)?, ..analysis.scope.clone() };
     let frozen = frozen(analysis)?;
     let export = AnalysisFolder::create(&analysis.out)?;
     let Some((first, _)) = recordings.found.first() else { return Err(nothing_counts(analysis, 0, &[], &[])) };
     let kitchen = LogReader::open(first)?.kitchen;
     let numbered: Vec<(usize, &(PathBuf, String))> = recordings.found.iter().enumerate().collect();
     let work = |kept: &mut KeptCost, &(index, recording): &(usize, &(PathBuf, String))| {
-        let (analysed, rows) = analyse(recording, (analysis.extent, raters.as_ref()), (first, &kitchen), kept)?;
-        Ok(keep(&export, analysis.extent, index, &analysed, &rows)?)
+        let (analysed, rows) = analyse(recording, &scope, (first, &kitchen), kept)?;
+        Ok(keep(&export, &scope, index, &analysed, &rows)?)
     };
     parallel::each_with(&numbered, KeptCost::default, work, done).into_iter().collect::<Result<(), StudyError>>()?;
     let left = (recordings.copies.clone(), recordings.foreign.clone());
     let frozen = frozen.map(|frozen| Ok::<_, FileError>((frozen, recordings.versions()?))).transpose()?;
-    conclude(numbered.len(), analysis, (&export, analysis.extent), frozen, left)
+    conclude(numbered.len(), analysis, &export, frozen, left)
 }
 
 /// The frozen plan with which the recordings are compared, with its digest; `None` if the user names no frozen plan.
@@ -190,7 +188,7 @@ fn frozen(analysis: &AnalysisRequest) -> Result<Option<(String, FrozenPlan)>, Fi
 /// `first`: a recording of the study with its kitchen. Returns also the rows of the tables of events.
 fn analyse(
     (path, name): &(PathBuf, String),
-    (extent, raters): (AnalysisScope, Option<&[String; 2]>),
+    scope: &AnalysisScope,
     first: (&Path, &Arc<Kitchen>),
     kept: &mut KeptCost,
 ) -> Result<(AnalysedRecording, [Vec<u8>; 5]), StudyError> {
@@ -200,8 +198,10 @@ fn analyse(
     let (tutorial, consent) = (reading::tutorial_answers(log, name)?, reading::consent(path)?);
     let waived = reading::waived_practice(path)?;
     let (mut trial, mut rows) = (None, Default::default());
-    if let Some((own, read)) = reading::read(path, name, extent, raters, kept)? {
-        same_kitchen(first, (path, &own))?;
+    if let Some((own, read)) = reading::read(path, name, scope, kept)? {
+        let mut one_kitchen = SameKitchenCheck::default();
+        one_kitchen.admit(first.0, first.1)?;
+        one_kitchen.admit(path, &own)?;
         (trial, rows) = (Some((read.trial, read.details, read.facts)), read.rows);
     }
     Ok((
@@ -215,13 +215,13 @@ fn analyse(
 /// replays would also hinder the use of these blocks for the next recording.
 fn keep(
     export: &AnalysisFolder,
-    extent: AnalysisScope,
+    scope: &AnalysisScope,
     index: usize,
     analysed: &AnalysedRecording,
     rows: &[Vec<u8>; 5],
 ) -> Result<(), AnalysisWriteError> {
     export.keep_analysed(index, analysed)?;
-    if extent.events && analysed.trial.is_some() { export.keep(index, rows) } else { Ok(()) }
+    if scope.events && analysed.trial.is_some() { export.keep(index, rows) } else { Ok(()) }
 }
 
 #[derive(Default)]
@@ -263,7 +263,7 @@ impl CollectedRecordings {
 fn conclude(
     number: usize,
     analysis: &AnalysisRequest,
-    (export, extent): (&AnalysisFolder, AnalysisScope),
+    export: &AnalysisFolder,
     frozen: Option<((String, FrozenPlan), PlanVersions)>,
     (copies, foreign): (Vec<RecordingCopy>, Vec<ForeignRecording>),
 ) -> Result<(StudySummary, PathBuf), StudyError> {
@@ -296,7 +296,7 @@ fn conclude(
         tutorial: TutorialSummary::from_answers(&all.tutorials),
         ..StudySummary::from_trials(trials, details, &all.facts, practice)
     };
-    let events: Vec<usize> = if extent.events { all.kept.into_values().collect() } else { Vec::new() };
+    let events: Vec<usize> = if analysis.scope.events { all.kept.into_values().collect() } else { Vec::new() };
     filled.extend(export.tables_of_events(&events)?);
     let columns = ParticipantRow::columns_of(trials);
     filled.extend(export.table_of_columns(&columns, participants(trials, &consents))?);
@@ -327,12 +327,6 @@ fn tables_of_details(
         totals.add(trial, details);
     }
     Ok((totals, [of_concepts.finish()?, of_probes.finish()?].into_iter().flatten().collect()))
-}
-
-fn same_kitchen(first: (&Path, &Arc<Kitchen>), other: (&Path, &Arc<Kitchen>)) -> Result<(), FileError> {
-    let mut one = SameKitchenCheck::default();
-    one.admit(first.0, first.1)?;
-    one.admit(other.0, other.1)
 }
 
 /// None of these recordings is a trial that counts: practice, trials that are left out, and foreign ones.

@@ -9,14 +9,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::analysis::offer_summary::{OfferSummary, TimedOffer};
 use crate::analysis::probe_record::{ProbeCollector, ProbedTrial};
-use crate::analysis::trial_summary::{RegretSum, order_times};
+use crate::analysis::trial_summary::{RegretSum, TrialSummary, belief_related, order_times, seconds_between};
 use crate::facts::RecordingFacts;
 use crate::kept_cost::KeptCost;
 use crate::pass::rows::{CodedErrors, RowCollector, TrialPressAnalyses};
 use crate::pass::sweep::{ConceptSweep, useful_signals};
 use crate::prevention::TrialGroundTruth;
 use crate::rater_episodes::{BeliefEvidence, KnownFalseBeliefs, RaterFalseBeliefAgreement};
-use crate::robot_tally::{RobotEventSummary, RobotEventTally};
+use crate::robot_tally::RobotEventTally;
 use crate::standing::exclusion_status;
 use crate::tables::participants::{TutorialAnswerCollector, TutorialQuestionRow};
 use crate::trial_statistics::{
@@ -46,7 +46,7 @@ use tomcom_session::settings::{Condition, ParticipantKind};
 use tomcom_session::wall_display::{AnswerDevice, DisplayEvent};
 use tomcom_session::watcher::{SenderComparisonFollower, SenderComparisonSettings};
 use tomcom_session::wizard_log::WizardSummary;
-use tomcom_session::{Event, LogHeader, Session, TimelineEntry, TimelineEvent, TimestampedEvent, TrialPhase};
+use tomcom_session::{Event, Session, TimelineEvent, TimestampedEvent, TrialPhase};
 
 #[derive(Debug)]
 pub struct RecordingAnalysis {
@@ -56,10 +56,13 @@ pub struct RecordingAnalysis {
     pub rows: [Vec<u8>; 5],
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct AnalysisScope {
     pub concepts: bool,
     pub events: bool,
+    /// The two raters whose codes are used; `None`: the only two, or for each recording the two with the most complete codes.
+    pub raters: Option<[String; 2]>,
 }
 
 /// Sums up the times at which the participant's display was lost, on the trial's clock.
@@ -130,14 +133,13 @@ fn expected(kitchen: &Kitchen, state: tomcom_core::kitchen::State, estimate: &Di
     belief
 }
 
-/// Analyses the recording, which tables call by `name`; `None` for a practice recording. `raters`: the two raters whose
-/// codes are used, if the user named them. `kept`: the cost to go that the next recording takes over. Errors: the
-/// recording cannot be read or replayed, or it is not clear which two raters' codes to use.
+/// Analyses the recording, which tables call by `name`; `None` for a practice recording. `kept`: the cost to go that the
+/// next recording takes over. Errors: the recording cannot be read or replayed, or it is not clear which two raters' codes
+/// to use.
 pub fn read(
     recording: &Path,
     name: &str,
-    extent: AnalysisScope,
-    raters: Option<&[String; 2]>,
+    scope: &AnalysisScope,
     kept: &mut KeptCost,
 ) -> FileResult<Option<(Arc<Kitchen>, RecordingAnalysis)>> {
     let mut log = LogReader::open(recording)?;
@@ -155,7 +157,7 @@ pub fn read(
     let mut display = DisplayLossTally::default();
     let is_simulated = header.session.participant.kind == ParticipantKind::Simulated;
     let is_coded = rater_codes::raters(log.folder())?.len() >= 2;
-    let mut pass = ReplayPass::new(log.session(), extent.concepts, is_simulated || is_coded, cost.clone());
+    let mut pass = ReplayPass::new(log.session(), scope.concepts, is_simulated || is_coded, cost.clone());
     let mut trace = BeliefEvidence::default();
     let mut by_estimate = (!is_simulated).then(|| ByEstimate {
         attributor: ErrorAttributor::new(header.session.human.decision.clone(), log.session().seed()),
@@ -175,7 +177,7 @@ pub fn read(
             by_estimate.note(&line.stamped, &change, follower, &mut cost);
             trace.note(&line.stamped, &change, &follower.session);
         }
-        if extent.events {
+        if scope.events {
             rows.note(&line.stamped, &change, follower, was_running);
         }
         match line.stamped.event {
@@ -185,32 +187,14 @@ pub fn read(
         }
     }
     let standing = exclusion_status(&pass.follower().session, &log)?;
-    let coded = CodedErrors::read(&log, pass.follower(), raters)?;
+    let coded = CodedErrors::read(&log, pass.follower(), scope.raters.as_ref())?;
     let lanes = lanes(&mut pass);
     let follower = pass.follower();
+    let (session, spec) = (&follower.session, &header.session);
     let by_estimate = by_estimate.map(|found| found.causes);
     let (judged, basis) = coded.judged(follower, by_estimate.as_deref());
-    let left_out = standing.left_out(&follower.session, log.ending());
-    let mut trial = trial(name, &header, follower, left_out);
-    trial.ended = robot.ended;
-    trial.display_losses = trial.display_arm.map(|_| display.finish(&follower.session));
-    trial.robot = robot.into_figures();
     let known = basis.and_then(|basis| known_beliefs(follower, &judged, basis, &coded, &trace, &mut cost));
-    trial.beliefs = basis.map(|basis| beliefs(follower, &judged, basis, known.as_ref()));
-    trial.answers = answers;
-    if extent.concepts && basis == Some(BeliefSource::Recorded) && trial.signals > 0 {
-        trial.useful_signals = useful_signals(recording, estimates, cost)?;
-    }
-    trial.additional_presses_per_order = regret.per_order(trial.orders);
-    trial.wizard = (header.session.trial.condition == Condition::Wizard).then(|| match &known {
-        Some(known) if known.basis != BeliefSource::Recorded => {
-            WizardSummary::measures_by_raters(follower, &known.episodes)
-        }
-        _ => WizardSummary::from_follower(follower).measures,
-    });
     let details = details(&pass, &judged, known.as_ref(), &lanes, probes);
-    trial.offers = OfferSummary::from_offers(&details.offers);
-    trial.probes = details.probes.as_ref().map(ProbedTrial::statistics);
     let sequences = sequences(&judged);
     let presses = TrialPressAnalyses {
         judged: &judged,
@@ -219,14 +203,72 @@ pub fn read(
         coded: &coded,
         known: known.as_ref(),
     };
-    let rows = rows.finish(&follower.session, &presses, &lanes, WINDOW);
-    if matches!(basis, Some(BeliefSource::Consensus | BeliefSource::Raters)) {
-        trial.shared_beliefs = coded.raters.as_ref().map(|pair| RaterFalseBeliefAgreement::count(&pair.codes));
-        trial.raters = coded.raters;
-    }
-    trial.settled_by = coded.settled_by.filter(|_| basis == Some(BeliefSource::Consensus));
-    trial.stale_consensus = coded.stale.filter(|_| !is_simulated);
-    let facts = RecordingFacts::from_session(&header, &follower.session);
+    let rows = rows.finish(session, &presses, &lanes);
+    let summary = TrialSummary::from_follower(follower);
+    let (step, orders) = (spec.step.as_ref(), summary.served.len() as u64);
+    let is_rated = matches!(basis, Some(BeliefSource::Consensus | BeliefSource::Raters));
+    let raters = coded.raters.filter(|_| is_rated);
+    let are_judged = scope.concepts && basis == Some(BeliefSource::Recorded) && summary.signals > 0;
+    let display_arm = (spec.participant.kind == ParticipantKind::Display).then_some(spec.display.arm);
+    let contents = session.timeline.iter().filter_map(|entry| match &entry.what {
+        TimelineEvent::Noted(Event::SignalShown { signal, .. }) => Some(signal.names().len() as u64),
+        _ => None,
+    });
+    let between_presses = follower.judged.windows(2).map(|pair| seconds_between(session, pair[0].time, pair[1].time));
+    let trial = TrialStatistics {
+        recording: name.to_string(),
+        participant: spec.participant.code.clone(),
+        seed: spec.seed,
+        kind: spec.participant.kind,
+        started: header.started.clone(),
+        group: step.map(|step| step.group.clone()),
+        period: step.and_then(|step| step.period),
+        is_planned: step.is_some(),
+        condition: spec.trial.condition,
+        study_arm: session.study_arm(),
+        planned_arm: session.planned_arm(),
+        aims: step.map(|step| step.aims),
+        wizard_sees: spec.console.visibility,
+        acting: SignalSenderWithParameter::from_settings(session.study_arm(), spec.assistant.parameter()),
+        left_out: standing.left_out(session, log.ending()),
+        ended: robot.ended,
+        arm: spec.robot.arm,
+        robot: robot.figures,
+        human_presses: summary.human_actions,
+        robot_presses: summary.robot_actions,
+        initiative_presses: u64::from(session.robot.initiative_presses),
+        human_model: spec.human.named(),
+        errors: summary.errors,
+        races: summary.races,
+        unproven: follower.unproven() as u64,
+        beliefs: basis.map(|basis| beliefs(follower, &judged, basis, known.as_ref())),
+        orders,
+        order_s: median(order_times(session)),
+        presses_per_order: median(summary.served.iter().map(|(_, presses)| f64::from(*presses)).collect()),
+        additional_presses_per_order: regret.per_order(orders),
+        press_s: median(between_presses.collect()),
+        signals: summary.signals,
+        signal_contents: contents.sum(),
+        useful_signals: if are_judged { useful_signals(recording, estimates, cost)? } else { None },
+        display_arm,
+        display_losses: display_arm.map(|_| display.finish(session)),
+        offers: OfferSummary::from_offers(&details.offers),
+        seconds: summary.seconds,
+        answers,
+        wizard: (spec.trial.condition == Condition::Wizard).then(|| match &known {
+            Some(known) if known.basis != BeliefSource::Recorded => {
+                WizardSummary::measures_by_raters(follower, &known.episodes)
+            }
+            _ => WizardSummary::from_follower(follower).measures,
+        }),
+        wizard_saw_advice: session.wizard_saw_advice(),
+        shared_beliefs: raters.as_ref().map(|pair| RaterFalseBeliefAgreement::count(&pair.codes)),
+        raters,
+        settled_by: coded.settled_by.filter(|_| basis == Some(BeliefSource::Consensus)),
+        stale_consensus: coded.stale.filter(|_| !is_simulated),
+        probes: details.probes.as_ref().map(ProbedTrial::statistics),
+    };
+    let facts = RecordingFacts::from_session(&header, session);
     kept.keep(&kitchen, pass.into_cost());
     Ok(Some((kitchen, RecordingAnalysis { trial, details, facts, rows })))
 }
@@ -265,13 +307,6 @@ fn lanes(pass: &mut ReplayPass) -> Vec<(String, Vec<CommunicationEvent>)> {
     let session = &pass.follower().session;
     let name = if session.spec.trial.condition == Condition::Wizard { "wizard" } else { "assistant" };
     vec![(name.to_string(), sent(session))]
-}
-
-fn contents(entry: &TimelineEntry) -> u64 {
-    match &entry.what {
-        TimelineEvent::Noted(Event::SignalShown { signal, .. }) => signal.names().len() as u64,
-        _ => 0,
-    }
 }
 
 fn sent(session: &Session) -> Vec<CommunicationEvent> {
@@ -317,83 +352,21 @@ fn beliefs(
     known: Option<&KnownFalseBeliefs>,
 ) -> FalseBeliefErrors {
     let episodes: &[FalseBeliefEpisode] = known.map_or(&[], |known| &known.episodes);
-    let count =
-        |is: fn(ErrorCause) -> bool| judged.iter().filter_map(|press| press.cause).filter(|&c| is(c)).count() as u64;
+    let [errors, of_two] = belief_related(judged);
     let lengths = |sequences: &[ErrorSequence]| sequences.iter().map(ErrorSequence::length).collect();
     let all = sequences(judged);
-    let recovery = |sequence: &ErrorSequence| Some(since(&follower.session, sequence.began, sequence.recovered?));
+    let recovery =
+        |sequence: &ErrorSequence| Some(seconds_between(&follower.session, sequence.began, sequence.recovered?));
     FalseBeliefErrors {
         basis,
-        errors: count(|cause| matches!(cause, ErrorCause::Belief { .. })),
-        of_two: count(|cause| matches!(cause, ErrorCause::Belief { with: Some(_), .. })),
+        errors,
+        of_two,
         lengths: lengths(&all),
         causes: BeliefErrorCounts::from_presses(&follower.session.kitchen, judged, episodes),
         lengths_any_aspect: lengths(&sequences_any_aspect(judged)),
         recovery_s: all.iter().filter_map(recovery).collect(),
         episodes: known.map(|known| known.episodes.iter().filter(|episode| episode.errors > 0).count() as u64),
     }
-}
-
-fn trial(name: &str, header: &LogHeader, follower: &SessionFollower, left_out: Option<String>) -> TrialStatistics {
-    let (session, spec) = (&follower.session, &header.session);
-    let step = spec.step.as_ref();
-    let between = |times: Vec<SessionTime>| -> Vec<f64> {
-        times.windows(2).map(|pair| since(session, pair[0], pair[1])).collect()
-    };
-    let presses = std::iter::once(0).chain(session.served.iter().map(|served| served.presses)).collect::<Vec<u32>>();
-    TrialStatistics {
-        recording: name.to_string(),
-        participant: spec.participant.code.clone(),
-        seed: spec.seed,
-        kind: spec.participant.kind,
-        started: header.started.clone(),
-        group: step.map(|step| step.group.clone()),
-        period: step.and_then(|step| step.period),
-        is_planned: step.is_some(),
-        condition: spec.trial.condition,
-        study_arm: session.study_arm(),
-        planned_arm: session.planned_arm(),
-        aims: step.map(|step| step.aims),
-        wizard_sees: spec.console.visibility,
-        acting: SignalSenderWithParameter::from_settings(session.study_arm(), spec.assistant.parameter()),
-        left_out,
-        ended: None,
-        arm: spec.robot.arm,
-        robot: RobotEventSummary::default(),
-        human_presses: u64::from(session.presses[Agent::Human.index()]),
-        robot_presses: u64::from(session.presses[Agent::Robot.index()]),
-        initiative_presses: u64::from(session.robot.initiative_presses),
-        human_model: spec.human.named(),
-        errors: follower.errors() as u64,
-        races: follower.judged.iter().filter(|press| press.verdict.race).count() as u64,
-        unproven: follower.unproven() as u64,
-        beliefs: None,
-        orders: session.served.len() as u64,
-        order_s: median(order_times(session)),
-        additional_presses_per_order: None,
-        presses_per_order: median(presses.windows(2).map(|pair| f64::from(pair[1] - pair[0])).collect()),
-        press_s: median(between(follower.judged.iter().map(|press| press.time).collect())),
-        signals: sent(session).len() as u64,
-        signal_contents: session.timeline.iter().map(contents).sum(),
-        seconds: session.trial_clock(session.time).as_secs_f64(),
-        answers: Vec::new(),
-        wizard: None,
-        useful_signals: None,
-        display_losses: None,
-        display_arm: (spec.participant.kind == ParticipantKind::Display).then_some(spec.display.arm),
-        offers: OfferSummary::default(),
-        wizard_saw_advice: session.wizard_saw_advice(),
-        raters: None,
-        shared_beliefs: None,
-        settled_by: None,
-        stale_consensus: None,
-        probes: None,
-    }
-}
-
-/// Time between two session times, without pauses, in seconds.
-fn since(session: &Session, from: SessionTime, to: SessionTime) -> f64 {
-    session.trial_clock_at(to).secs_since(session.trial_clock_at(from))
 }
 
 fn confirmed_answers(session: &Session) -> Vec<QuestionnaireAnswer> {
@@ -463,7 +436,7 @@ pub(super) fn tutorial_answers(mut log: LogReader, name: &str) -> FileResult<Vec
 }
 
 #[derive(Debug)]
-pub enum ReplayPass {
+enum ReplayPass {
     Plain(Box<SessionFollower>),
     Beside(Box<SenderComparisonFollower>),
     Swept(Box<ConceptSweep>),
@@ -472,7 +445,7 @@ pub enum ReplayPass {
 impl ReplayPass {
     /// The replay for this session. `concepts`: whether hypothetical signals are wanted. `is_known`: whether the
     /// participant's beliefs are recorded, or may follow from raters' codes.
-    pub fn new(session: Session, concepts: bool, is_known: bool, cost: CostToGo) -> ReplayPass {
+    fn new(session: Session, concepts: bool, is_known: bool, cost: CostToGo) -> ReplayPass {
         let (spec, mut session) = (&session.spec.clone(), session);
         match spec.trial.condition {
             Condition::Wizard if concepts => {
@@ -487,7 +460,7 @@ impl ReplayPass {
     }
 
     /// Applies the next event of the recording. Errors: the event does not fit the session.
-    pub fn apply(&mut self, stamped: &TimestampedEvent) -> Result<KitchenChange, ApplyError> {
+    fn apply(&mut self, stamped: &TimestampedEvent) -> Result<KitchenChange, ApplyError> {
         match self {
             ReplayPass::Plain(follower) => follower.apply(stamped).map(|applied| applied.change),
             ReplayPass::Beside(watcher) => watcher.apply(stamped),
@@ -503,7 +476,7 @@ impl ReplayPass {
         }
     }
 
-    pub fn follower(&self) -> &SessionFollower {
+    fn follower(&self) -> &SessionFollower {
         match self {
             ReplayPass::Plain(follower) => follower,
             ReplayPass::Beside(watcher) => &watcher.follower,

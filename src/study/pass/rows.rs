@@ -12,7 +12,7 @@ use tomcom_core::gaze::{MIN_CONFIDENCE, nearest_location};
 use tomcom_core::kitchen::{Agent, AspectId, Kitchen, KitchenChange, LocationId, Press, State};
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::{ErrorCause, FalseBeliefTarget};
-use tomcom_core::measures::matching::{CommunicationEvent, MatchCriterion, matched};
+use tomcom_core::measures::matching::{CommunicationEvent, MatchCriterion, WINDOW, matched};
 use tomcom_core::measures::raters::{
     BeliefSource, CodableErrors, ErrorCauseCode, ErrorCauseKind, RaterChoice, RaterCodes, RaterPair,
 };
@@ -24,7 +24,7 @@ use tomcom_session::log::{LogReader, consensus_file, rater_codes};
 use tomcom_session::settings::ParticipantKind;
 use tomcom_session::{Event, Session, TimestampedEvent};
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct RowCollector {
     recording: String,
     /// Of each table of events, in the order of [`CsvTable::OF_EVENTS`].
@@ -77,14 +77,7 @@ impl<'a> TrialPressAnalyses<'a> {
 
 impl RowCollector {
     pub fn new(recording: &str) -> RowCollector {
-        RowCollector {
-            recording: recording.to_string(),
-            rows: Default::default(),
-            pressed_at: [None; 2],
-            presses: Vec::new(),
-            witness: None,
-            look: None,
-        }
+        RowCollector { recording: recording.to_string(), ..RowCollector::default() }
     }
 
     /// Adds the rows of an event that was just applied; `was_running`: whether the trial was running before the event.
@@ -176,7 +169,6 @@ impl RowCollector {
         session: &Session,
         known: &TrialPressAnalyses,
         lanes: &[(String, Vec<CommunicationEvent>)],
-        window: u32,
     ) -> [Vec<u8>; 5] {
         self.end_look(session);
         let (recording, kitchen) = (&*self.recording, &*session.kitchen);
@@ -185,7 +177,7 @@ impl RowCollector {
             add(&mut self.rows, &ActionRow { recording, kitchen, recorded, analysis });
         }
         let pairs = match lanes {
-            [(_, of), (_, with)] => Some(matched(of, with, window, MatchCriterion::Signal)),
+            [(_, of), (_, with)] => Some(matched(of, with, WINDOW, MatchCriterion::Signal)),
             _ => None,
         };
         let offers = TimedOffer::visible(session);

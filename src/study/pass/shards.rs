@@ -18,9 +18,7 @@ use crate::parallel::{self, WorkerPool};
 use crate::pass::reading::AnalysisScope;
 use crate::pass::{AnalysisRequest, NamedRecordings, StudyError, analyse, conclude, frozen, keep};
 use crate::planned_trial::{ForeignRecording, PlannedTrialKey, RecordingCopy, differing_copy, mixed_kinds};
-use crate::study_part::{
-    AnalysedRecording, PART_FORMAT, PartAnalysisOptions, PartHeader, PartShared, check_parts, trial_index,
-};
+use crate::study_part::{AnalysedRecording, PART_FORMAT, PartHeader, PartShared, check_parts, trial_index};
 use tomcom_session::files::compile_kitchen;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::headless::SimulationShard;
@@ -44,10 +42,11 @@ pub fn analyse_shard(
     let header = |(path, _): &(PathBuf, String)| LogReader::open(path).map(|log| log.header);
     let headers = parallel::each(&recordings.found, header, || ());
     // Named raters are checked when the parts are joined: a part alone may be without codes of one.
-    let raters = match &analysis.raters {
+    let raters = match &analysis.scope.raters {
         Some(named) => Some(named.clone()),
         None => recordings.raters(analysis)?,
     };
+    let scope = AnalysisScope { raters, ..analysis.scope.clone() };
     let (mut own, mut plans, mut left_out) = (Vec::new(), BTreeSet::new(), BTreeSet::new());
     let mut versions = PlanVersions::default();
     for (recording, header) in recordings.found.into_iter().zip(headers) {
@@ -61,7 +60,6 @@ pub fn analyse_shard(
         }
     }
     begun(own.len());
-    let AnalysisScope { concepts, events } = analysis.extent;
     let header = PartHeader {
         study_part: PART_FORMAT,
         program: env!("CARGO_PKG_VERSION").to_string(),
@@ -71,7 +69,7 @@ pub fn analyse_shard(
         left_out,
         copies: recordings.copies.into_iter().collect(),
         foreign: recordings.foreign.into_iter().collect(),
-        analysis: PartAnalysisOptions { concepts, events, raters: analysis.raters.clone() },
+        analysis: analysis.scope.clone(),
         plans,
     };
     let Some((first, _)) = own.first() else {
@@ -82,9 +80,8 @@ pub fn analyse_shard(
     let kitchen = Some([log.header.layout.clone(), log.header.recipes.clone()]);
     let mut part = PartWriter::create(&analysis.out, &header, &PartShared { kitchen, versions })?;
     let workers = WorkerPool::new(KeptCost::default);
-    let work = |kept: &mut KeptCost, recording: &(PathBuf, String)| {
-        analyse(recording, (analysis.extent, raters.as_ref()), (first, &log.kitchen), kept)
-    };
+    let work =
+        |kept: &mut KeptCost, recording: &(PathBuf, String)| analyse(recording, &scope, (first, &log.kitchen), kept);
     for block in own.chunks(BLOCK) {
         for analysed in workers.each(block, work, &done) {
             let (recording, rows) = analysed?;
@@ -115,8 +112,7 @@ pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), Study
             kitchen.admit(part.path(), &Arc::new(own.kitchen))?;
         }
     }
-    let PartAnalysisOptions { concepts, events, .. } = headers[0].analysis.clone();
-    let extent = AnalysisScope { concepts, events };
+    let analysis = &AnalysisRequest { scope: headers[0].analysis.clone(), ..analysis.clone() };
     let export = AnalysisFolder::create(&analysis.out)?;
     let (mut joined, mut versions) = (JoinedRecordings::default(), PlanVersions::default());
     for part in &mut parts {
@@ -125,7 +121,7 @@ pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), Study
         joined.foreign.extend(part.header.foreign.iter().cloned());
         while let Some((recording, rows)) = part.next_recording()? {
             if let Some(index) = joined.admit(part.path(), &recording, &export)? {
-                keep(&export, extent, index, &recording, &rows)?;
+                keep(&export, &analysis.scope, index, &recording, &rows)?;
             }
         }
     }
@@ -139,11 +135,11 @@ pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), Study
         return Err(FileError::from_finding(part.path(), found, remedy.to_string()).into());
     }
     // A shard alone may be without codes of a rater.
-    if let Some(named) = &headers[0].analysis.raters {
+    if let Some(named) = &analysis.scope.raters {
         rater_codes::check_named(Path::new("--raters"), named, &raters)?;
     }
     let left = (copies.into_iter().collect(), foreign.into_iter().collect());
-    conclude(number, analysis, (&export, extent), frozen.map(|frozen| (frozen, versions)), left)
+    conclude(number, analysis, &export, frozen.map(|frozen| (frozen, versions)), left)
 }
 
 /// The recordings of a study's parts. Parts of different folders can have copies, or the same trial.

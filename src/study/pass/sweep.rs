@@ -25,6 +25,7 @@ use tomcom_core::communication::settings::AssistantSpec;
 use tomcom_core::communication::signal::SignalRepeatRule;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, AspectId, KitchenChange};
+use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::ErrorCause;
 use tomcom_core::measures::sequences::FalseBeliefEpisode;
 use tomcom_core::mind::RecordedEstimate;
@@ -166,15 +167,6 @@ enum SignalScope {
     Presses(usize),
 }
 
-impl SignalScope {
-    fn of_signal(session: &Session, signal: &Signal) -> SignalScope {
-        match signal {
-            Signal::Propose(presses) => SignalScope::Presses(presses.len()),
-            signal => SignalScope::Beliefs(aspects_told(&session.kitchen, session.state, signal)),
-        }
-    }
-}
-
 struct TwinResult {
     time: SessionTime,
     scope: SignalScope,
@@ -248,7 +240,11 @@ fn run_to(
 
 /// Continues without further signals until the false beliefs that the signal is about have ended.
 fn twin(mut engine: SessionEngine, time: SessionTime, signal: &Signal) -> TwinResult {
-    let scope = SignalScope::of_signal(engine.session(), signal);
+    let session = engine.session();
+    let scope = match signal {
+        Signal::Propose(presses) => SignalScope::Presses(presses.len()),
+        signal => SignalScope::Beliefs(aspects_told(&session.kitchen, session.state, signal)),
+    };
     let presses = engine.judged().len();
     let mut attendant = SimulatedRobotOperator::default();
     while engine.session().phase == TrialPhase::Running || engine.session().is_frozen() {
@@ -280,27 +276,23 @@ fn open_at<'a>(
     follower.episodes.all().filter(|episode| told.contains(&episode.aspect)).filter(is_open)
 }
 
+/// Of beliefs: errors from those that are false at this time, until each is corrected.
 fn errors_after(follower: &SessionFollower, time: SessionTime, scope: &SignalScope) -> u64 {
-    match scope {
-        SignalScope::Beliefs(told) => belief_errors_after(follower, time, told),
-        SignalScope::Presses(next) => {
-            let after = follower.judged.iter().filter(|press| press.time > time).take(*next);
-            after.filter(|press| press.verdict.error).count() as u64
+    let after = follower.judged.iter().filter(|press| press.time > time);
+    let errors = match scope {
+        SignalScope::Beliefs(told) => {
+            let kitchen = &follower.session.kitchen;
+            let open: Vec<&FalseBeliefEpisode> = open_at(follower, time, told).collect();
+            let is_from_open = |press: &&JudgedPress| {
+                let Some(ErrorCause::Belief { target, .. }) = press.cause else { return false };
+                target.aspects(kitchen).any(|aspect| {
+                    let mut about = open.iter().filter(|episode| episode.aspect == aspect);
+                    about.any(|episode| episode.corrected.is_none_or(|end| press.time <= end))
+                })
+            };
+            after.filter(is_from_open).count()
         }
-    }
-}
-
-/// From false beliefs held at this time about the aspects in `told`, until each is corrected.
-fn belief_errors_after(follower: &SessionFollower, time: SessionTime, told: &[AspectId]) -> u64 {
-    let kitchen = &follower.session.kitchen;
-    let open: Vec<&FalseBeliefEpisode> = open_at(follower, time, told).collect();
-    let errors = follower.judged.iter().filter(|press| {
-        let Some(ErrorCause::Belief { target, .. }) = press.cause.filter(|_| press.time > time) else { return false };
-        let mut aspects = target.aspects(kitchen);
-        aspects.any(|aspect| {
-            let is_in = |episode: &&FalseBeliefEpisode| episode.corrected.is_none_or(|end| press.time <= end);
-            open.iter().filter(|episode| episode.aspect == aspect).any(is_in)
-        })
-    });
-    errors.count() as u64
+        SignalScope::Presses(next) => after.take(*next).filter(|press| press.verdict.error).count(),
+    };
+    errors as u64
 }

@@ -3,7 +3,8 @@
 use crate::analysis::probe_figures;
 use crate::arm_comparison::StudyArmComparison;
 use crate::effect::{AssistanceEffect, LeftOutParticipant, left_out_in_words};
-use crate::figures::{StudySummary, pairs_in_words};
+use crate::figures::{CorrectedRecording, IdenticalCodes, StudySummary, pairs_in_words};
+use crate::frozen_plan::PreregistrationCheck;
 use crate::headline::{
     RATES_AND_RATIO, directed, doubts, level, mixed_sources, not_reliable, p_value, primary_outcome,
 };
@@ -20,8 +21,7 @@ use tomcom_session::event::TrialEndReason;
 pub fn describe(figures: &StudySummary) -> String {
     let totals = &figures.totals;
     let mut text = format!("{}\n", figures.title);
-    let outcome = primary_outcome(figures);
-    outcome.iter().for_each(|sentence| text += &format!("{sentence}\n"));
+    text += &lines(primary_outcome(figures));
     if figures.arms.is_some() {
         text += &format!("{RATES_AND_RATIO}\n");
     }
@@ -43,13 +43,10 @@ pub fn describe(figures: &StudySummary) -> String {
             count(totals.unproven, "press of the human is", "presses of the human are")
         );
     }
-    text += &foreign_in_words(&figures.foreign).map_or(String::new(), |foreign| format!("{foreign}\n"));
-    text += &figures.preregistration.as_ref().map_or(String::new(), |found| format!("{}\n", found.words()));
-    text += &in_words(&figures.missing_trials, &figures.corrections)
-        .map_or(String::new(), |missing| format!("{missing}\n"));
-    for one in &figures.corrections {
-        text += &format!("{}\n", one.in_words());
-    }
+    text += &lines(foreign_in_words(&figures.foreign));
+    text += &lines(figures.preregistration.as_ref().map(PreregistrationCheck::words));
+    text += &lines(in_words(&figures.missing_trials, &figures.corrections));
+    text += &lines(figures.corrections.iter().map(CorrectedRecording::in_words));
     if figures.human_models.len() > 1 {
         let models = figures
             .human_models
@@ -58,7 +55,7 @@ pub fn describe(figures: &StudySummary) -> String {
         let models: Vec<String> = models.collect();
         text += &format!("the assistant had different models of the human: {}\n", models.join(", "));
     }
-    text += &copies_in_words(&figures.copies).map_or(String::new(), |copies| format!("{copies}\n"));
+    text += &lines(copies_in_words(&figures.copies));
     text += &match (totals.belief_related_errors, totals.sequences) {
         (Some(0), _) => format!("belief related errors: 0 of {}\n", count(totals.errors, "error", "errors")),
         (Some(related), Some(sequences)) => format!(
@@ -77,7 +74,7 @@ pub fn describe(figures: &StudySummary) -> String {
         ),
         _ => format!("belief related errors: not known ({})\n", totals.why_no_rate()),
     };
-    text += &mixed_sources(figures).map_or(String::new(), |(words, _)| format!("{words}\n"));
+    text += &lines(mixed_sources(figures).map(|(words, _)| words));
     if let Some(found) = &figures.raters {
         text += &format!(
             "two raters ({}): same cause for {} of {} errors (kappa {}), same false belief for {} of {} (kappa {})\n",
@@ -90,9 +87,7 @@ pub fn describe(figures: &StudySummary) -> String {
             number(found.kappa_aspect, why::NO_KAPPA)
         );
     }
-    for one in &figures.identical_codes {
-        text += &format!("{}\n", one.in_words());
-    }
+    text += &lines(figures.identical_codes.iter().map(IdenticalCodes::in_words));
     if let (Some(shared), Some(episodes)) = (&figures.shared_beliefs, totals.false_belief_episodes) {
         text += &format!(
             "false belief episodes: {episodes}; both raters name the same false belief for {}, each another for {}, \
@@ -187,11 +182,15 @@ pub fn describe(figures: &StudySummary) -> String {
     for (who, found) in compared {
         text += &found.as_ref().map_or(String::new(), |found| of_similarity(who, found));
     }
-    text += &WaivedPractice::in_words(&figures.waived).map_or(String::new(), |waived| format!("{waived}\n"));
+    text += &lines(WaivedPractice::in_words(&figures.waived));
     for one in &figures.left_out {
         text += &format!("left out of the analysis: {}: {}\n", one.recording, one.reason);
     }
     text
+}
+
+fn lines(all: impl IntoIterator<Item = String>) -> String {
+    all.into_iter().map(|line| line + "\n").collect()
 }
 
 fn of_live(arms: &[SignalSenderResults]) -> String {
@@ -312,7 +311,7 @@ pub fn describe_arms(found: &StudyArmComparison) -> String {
             one.margin
         );
     }
-    doubts(found).iter().for_each(|sentence| text += &format!("  {sentence}\n"));
+    text += &lines(doubts(found).iter().map(|sentence| format!("  {sentence}")));
     text
 }
 

@@ -175,7 +175,7 @@ fn the_digest_covers_all_that_can_change_a_trial_and_nothing_else() {
 }
 
 /// What a recording of P01 might say of itself.
-fn made(study: &Study, slot: usize, attempt: u32, outcome: RecordingOutcome) -> PlanRecording {
+pub fn made(study: &Study, slot: usize, attempt: u32, outcome: RecordingOutcome) -> PlanRecording {
     let (spec, _) = study.settings(WantedRecording { participant: 0, slot, attempt, instructed: slot > 0 });
     let recording = format!("2026-03-14-P01-{slot}{attempt}");
     let step = spec.step.expect("a step of the plan");
@@ -196,11 +196,14 @@ fn made(study: &Study, slot: usize, attempt: u32, outcome: RecordingOutcome) -> 
     }
 }
 
-/// Recordings as slot, attempt and outcome, and what comes next.
+/// Recordings as slot, attempt and outcome.
+fn all_made(study: &Study, recorded: &[(usize, u32, RecordingOutcome)]) -> Vec<PlanRecording> {
+    recorded.iter().map(|(slot, attempt, outcome)| made(study, *slot, *attempt, outcome.clone())).collect()
+}
+
 fn check_next(recorded: &[(usize, u32, RecordingOutcome)], next: NextRecording) {
     let study = study(|_| ());
-    let mut all: Vec<PlanRecording> =
-        recorded.iter().map(|(slot, attempt, outcome)| made(&study, *slot, *attempt, outcome.clone())).collect();
+    let mut all = all_made(&study, recorded);
     let progress =
         |all: &[PlanRecording]| ParticipantProgress::from_recordings(&study, 0, all).expect("recordings of the plan");
     assert_eq!(progress(&all).next, next, "{recorded:?}");
@@ -245,9 +248,7 @@ fn excluded_trials_are_done_and_told_until_they_are_repeated() {
     let study = study(|_| ());
     let excluded = || RecordingOutcome::Excluded { reason: "lights went out".to_string() };
     let progress = |recorded: &[(usize, u32, RecordingOutcome)]| {
-        let all: Vec<PlanRecording> =
-            recorded.iter().map(|(slot, attempt, outcome)| made(&study, *slot, *attempt, outcome.clone())).collect();
-        ParticipantProgress::from_recordings(&study, 0, &all).expect("recordings of the plan")
+        ParticipantProgress::from_recordings(&study, 0, &all_made(&study, recorded)).expect("recordings of the plan")
     };
     let done = RecordingOutcome::Complete;
     let all = [(0, 1, done.clone()), (1, 1, excluded()), (2, 1, done.clone())];

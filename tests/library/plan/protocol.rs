@@ -5,16 +5,10 @@ use tomcom::console::{ConsoleCommand, ConsoleMessage, update};
 use tomcom_session::plan::{NextRecording, ParticipantProgress, PhaseSpec, RecordingOutcome};
 use tomcom_study::files::recordings;
 
-use super::{files, folder, study};
+use super::{Run, files, folder, study};
 use crate::support::*;
 
-/// A recording of the plan, driven as a wizard would, without a console.
-struct Run {
-    engine: SessionEngine,
-    log: LogWriter,
-    now_s: f64,
-}
-
+/// A recording of the plan, driven as a wizard would.
 impl Run {
     fn new(out: &Path, wanted: WantedRecording) -> Run {
         let mut files = files();
@@ -24,19 +18,10 @@ impl Run {
         let study = files.study().expect("a plan");
         let (spec, trial) = study.settings(wanted);
         files.spec = spec;
-        let (log, engine) = live_recording(files, trial, out);
-        Run { engine, log, now_s: 0.0 }
+        Run::begin(files, trial, out)
     }
 
-    /// The reason why an input is refused, if it is.
-    fn input(&mut self, event: Event) -> Option<String> {
-        self.now_s += 0.5;
-        let outcome = self.engine.input(at(self.now_s), event);
-        outcome.events.iter().for_each(|stamped| self.log.append(stamped).expect("the log can be written"));
-        outcome.refused
-    }
-
-    fn tell(&mut self, event: ProtocolEvent) {
+    fn takes(&mut self, event: ProtocolEvent) {
         let refused = self.input(Event::Protocol(event.clone()));
         assert_eq!(refused, None, "{event:?}");
     }
@@ -47,41 +32,41 @@ impl Run {
     }
 
     fn next_phase(&mut self) {
-        let phase = self.engine.session().next_phase().expect("one more phase");
-        let number = self.engine.session().protocol.as_ref().expect("a plan").number + 1;
-        self.tell(ProtocolEvent::PhaseStarted { phase, number });
+        let phase = self.session().next_phase().expect("one more phase");
+        let number = self.session().protocol.as_ref().expect("a plan").number + 1;
+        self.takes(ProtocolEvent::PhaseStarted { phase, number });
     }
 
     /// Runs the trial to its end by itself.
     fn trial(&mut self) {
         assert_eq!(self.input(Event::TrialStarted), None);
-        while self.engine.session().phase == TrialPhase::Running {
+        while self.session().phase == TrialPhase::Running {
             let events = self.engine.fire();
             events.iter().for_each(|stamped| self.log.append(stamped).expect("the log can be written"));
         }
-        self.now_s = self.engine.session().time.as_secs_f64();
+        self.now_s = self.session().time.as_secs_f64();
     }
 
     /// Goes through everything that is left, as it is meant.
     fn go_through(&mut self) {
-        while self.engine.session().next_phase().is_some() {
+        while self.session().next_phase().is_some() {
             self.next_phase();
-            match self.engine.session().study_phase().cloned().expect("a phase") {
+            match self.session().study_phase().cloned().expect("a phase") {
                 PhaseSpec::Instruction { steps } | PhaseSpec::Debriefing { steps } => {
-                    (1..=steps.len()).for_each(|step| self.tell(ProtocolEvent::Ticked { step, done: true }));
+                    (1..=steps.len()).for_each(|step| self.takes(ProtocolEvent::Ticked { step, done: true }));
                 }
                 PhaseSpec::Tutorial { .. } => panic!("no display takes part"),
                 PhaseSpec::Trial | PhaseSpec::Familiarisation => self.trial(),
                 PhaseSpec::Questionnaire { questionnaire } => {
                     for item in questionnaire.items {
-                        self.tell(ProtocolEvent::ItemAnswered { item: item.id, answer: 5_u8.into() });
+                        self.takes(ProtocolEvent::ItemAnswered { item: item.id, answer: 5_u8.into() });
                     }
-                    self.tell(ProtocolEvent::AnswersConfirmed);
+                    self.takes(ProtocolEvent::AnswersConfirmed);
                 }
             }
         }
-        if self.engine.session().protocol.as_ref().is_some_and(|it| it.practice.as_ref().is_some_and(|it| !it.met)) {
-            self.tell(ProtocolEvent::CriterionWaived { reason: "no time".to_string() });
+        if self.session().protocol.as_ref().is_some_and(|it| it.practice.as_ref().is_some_and(|it| !it.met)) {
+            self.takes(ProtocolEvent::CriterionWaived { reason: "no time".to_string() });
         }
     }
 
@@ -104,24 +89,24 @@ fn what_happens_around_a_trial_keeps_its_order() {
     let out = folder("order");
     let mut run = Run::new(&out, wanted(0, false));
     assert!(run.input(Event::TrialStarted).is_some(), "no trial before its phase");
-    run.tell(consent());
+    run.takes(consent());
     run.refuses(consent());
     run.next_phase();
     run.refuses(ProtocolEvent::Ticked { step: 0, done: true });
     run.refuses(ProtocolEvent::Ticked { step: 99, done: true });
     run.refuses(ProtocolEvent::Ticked { step: 1, done: false });
     assert!(run.input(Event::TrialStarted).is_some(), "no trial in the instruction");
-    let (phase, number) = (run.engine.session().next_phase().expect("practice"), 2);
+    let (phase, number) = (run.session().next_phase().expect("practice"), 2);
     run.refuses(ProtocolEvent::PhaseStarted { phase, number });
-    let steps = run.engine.session().study_phase().expect("a phase").steps().len();
-    (1..=steps).for_each(|step| run.tell(ProtocolEvent::Ticked { step, done: true }));
+    let steps = run.session().study_phase().expect("a phase").steps().len();
+    (1..=steps).for_each(|step| run.takes(ProtocolEvent::Ticked { step, done: true }));
     run.refuses(ProtocolEvent::PhaseStarted { phase, number: 3 });
     run.next_phase();
     run.refuses(ProtocolEvent::CriterionWaived { reason: "too early".to_string() });
     run.trial();
-    let practice = run.engine.session().protocol.clone().and_then(|it| it.practice).expect("it was judged");
+    let practice = run.session().protocol.clone().and_then(|it| it.practice).expect("it was judged");
     assert!(!practice.met, "nobody serves two orders in 30 presses: {practice:?}");
-    assert!(run.engine.session().is_step_done());
+    assert!(run.session().is_step_done());
     run.refuses(ProtocolEvent::CriterionWaived { reason: String::new() });
     let folder = run.close();
     assert!(verify(&folder).expect("readable").verified);
@@ -140,27 +125,27 @@ fn items_are_answered_back_and_forth_and_confirmed() {
     run.next_phase();
     run.trial();
     run.next_phase();
-    let items = run.engine.session().questionnaire().expect("it is asked").items.clone();
+    let items = run.session().questionnaire().expect("it is asked").items.clone();
     let id = |index: usize| items[index].id.clone();
     assert_eq!((id(0), id(1)), ("too_often".to_string(), "annoyed".to_string()));
-    let at = |run: &Run| run.engine.session().protocol.as_ref().expect("a plan").item;
+    let at = |run: &Run| run.session().protocol.as_ref().expect("a plan").item;
     run.refuses(ProtocolEvent::ItemAnswered { item: id(0), answer: 0_u8.into() });
     run.refuses(ProtocolEvent::ItemAnswered { item: id(0), answer: 8_u8.into() });
     run.refuses(ProtocolEvent::ItemAnswered { item: id(1), answer: 3_u8.into() });
-    run.tell(ProtocolEvent::ItemAnswered { item: id(0), answer: 7_u8.into() });
+    run.takes(ProtocolEvent::ItemAnswered { item: id(0), answer: 7_u8.into() });
     assert_eq!(at(&run), 1);
-    run.tell(ProtocolEvent::ItemShown { item: id(2) });
+    run.takes(ProtocolEvent::ItemShown { item: id(2) });
     for item in 2..items.len() {
-        run.tell(ProtocolEvent::ItemSkipped { item: id(item) });
+        run.takes(ProtocolEvent::ItemSkipped { item: id(item) });
     }
     assert_eq!(at(&run), 1, "after the last comes the one that was left out");
     run.refuses(ProtocolEvent::AnswersConfirmed);
-    run.tell(ProtocolEvent::ItemAnswered { item: id(1), answer: 1_u8.into() });
+    run.takes(ProtocolEvent::ItemAnswered { item: id(1), answer: 1_u8.into() });
     assert_eq!(at(&run), items.len(), "all answers");
-    run.tell(ProtocolEvent::ItemShown { item: id(0) });
-    run.tell(ProtocolEvent::ItemAnswered { item: id(0), answer: 2_u8.into() });
+    run.takes(ProtocolEvent::ItemShown { item: id(0) });
+    run.takes(ProtocolEvent::ItemAnswered { item: id(0), answer: 2_u8.into() });
     assert_eq!(at(&run), items.len(), "one was changed, the others stand");
-    run.tell(ProtocolEvent::AnswersConfirmed);
+    run.takes(ProtocolEvent::AnswersConfirmed);
     run.refuses(ProtocolEvent::ItemShown { item: id(0) });
     run.go_through();
     assert!(verify(&run.close()).expect("readable").verified);
@@ -173,15 +158,15 @@ fn hasty_answers_are_all_taken() {
     run.next_phase();
     run.trial();
     run.next_phase();
-    let mut model = console_model(&run.engine.session().kitchen, &run.engine.session().spec, (80, 24));
-    let items = run.engine.session().questionnaire().expect("it is asked").items.clone();
+    let mut model = console_model(&run.session().kitchen, &run.session().spec, (80, 24));
+    let items = run.session().questionnaire().expect("it is asked").items.clone();
     let mut now_s = 5.0;
     for item in &items {
         for (code, after_s) in [(KeyCode::Char('4'), 0.3), (KeyCode::Char('5'), 0.3), (KeyCode::Enter, 1.0)] {
             now_s += after_s;
             model.clock = at(now_s);
             let key = ConsoleMessage::Key(KeyEvent::new(code, KeyModifiers::NONE));
-            let command = update(&mut model, run.engine.session(), key);
+            let command = update(&mut model, run.session(), key);
             let answered = ProtocolEvent::ItemAnswered { item: item.id.clone(), answer: 5_u8.into() };
             let wanted = (code == KeyCode::Enter).then_some(ConsoleCommand::Input(Event::Protocol(answered)));
             assert_eq!(command, wanted, "item {}: {:?}", item.id, model.notice);
@@ -193,7 +178,7 @@ fn hasty_answers_are_all_taken() {
     for (gap_s, counts) in [(1.0, true), (0.3, false), (0.3, false), (0.3, true)] {
         model.clock = at(model.clock.as_secs_f64() + gap_s);
         let key = ConsoleMessage::Key(KeyEvent::new(KeyCode::Enter, KeyModifiers::NONE));
-        let command = update(&mut model, run.engine.session(), key);
+        let command = update(&mut model, run.session(), key);
         assert_eq!(command.is_some(), counts, "after {gap_s} s: {command:?}");
         if let Some(ConsoleCommand::Input(event)) = command {
             assert_eq!(run.input(event), None);
@@ -208,8 +193,8 @@ fn where_a_recording_ended_is_told_by_the_presses_of_the_trial_and_by_the_phase(
     run.next_phase();
     run.trial();
     run.next_phase();
-    let item = run.engine.session().questionnaire().expect("a questionnaire").items[0].id.clone();
-    run.tell(ProtocolEvent::ItemAnswered { item, answer: 5_u8.into() });
+    let item = run.session().questionnaire().expect("a questionnaire").items[0].id.clone();
+    run.takes(ProtocolEvent::ItemAnswered { item, answer: 5_u8.into() });
     let recording = run.close();
     // Somebody pressed a button before the start.
     let log = fs::read_to_string(recording.join(LOG_NAME)).expect("a log");
@@ -224,7 +209,7 @@ fn where_a_recording_ended_is_told_by_the_presses_of_the_trial_and_by_the_phase(
     assert!(ended_where.starts_with(words) && ended_where.contains(" 1 of "), "{ended_where}");
     // A practice criterion that was waived is told, too.
     let mut run = Run::new(&out, wanted(0, false));
-    run.tell(consent());
+    run.takes(consent());
     run.go_through();
     run.close();
     let made = recordings::of_plan(&out, "study").expect("readable").0;
@@ -245,7 +230,7 @@ fn cut(recording: &Path, out: &Path, bytes: usize) -> PathBuf {
 fn wherever_a_recording_is_cut_it_is_open_verified_and_known() {
     let study = study(|_| ());
     let mut run = Run::new(&folder("whole"), wanted(2, false));
-    run.tell(consent());
+    run.takes(consent());
     run.go_through();
     let whole = run.close();
     let text = fs::read(whole.join(LOG_NAME)).expect("a log");
@@ -331,7 +316,7 @@ fn a_trial_of_a_plan_that_the_wizard_ends_counts_and_one_that_is_left_stays_open
     fs::create_dir_all(cut.join(&name)).expect("a folder");
     fs::copy(run.log.folder().join(LOG_NAME), cut.join(&name).join(LOG_NAME)).expect("copied");
     assert_eq!(recordings::of_plan(&cut, "study").expect("readable").0[0].outcome, RecordingOutcome::Open);
-    assert!(!run.engine.session().is_step_done(), "left now, it can be continued");
+    assert!(!run.session().is_step_done(), "left now, it can be continued");
     assert_eq!(run.input(Event::TrialEnded { reason: TrialEndReason::Wizard }), None);
     run.go_through();
     run.close();
@@ -341,7 +326,7 @@ fn a_trial_of_a_plan_that_the_wizard_ends_counts_and_one_that_is_left_stays_open
     run.next_phase();
     assert_eq!(run.input(Event::TrialStarted), None);
     assert_eq!(run.input(Event::TrialAborted { reason: "fire alarm".to_string() }), None);
-    assert!(run.engine.session().is_step_done(), "left now, it is over");
+    assert!(run.session().is_step_done(), "left now, it is over");
     run.close();
     let outcome = recordings::of_plan(&aborted, "study").expect("readable").0[0].outcome.clone();
     assert_eq!(outcome, RecordingOutcome::Void { reason: "aborted (fire alarm)".to_string() });

@@ -2,11 +2,12 @@
 
 use tomcom_session::files::parse::parse;
 use tomcom_session::plan::{
-    AnswerFormat, ParticipantProgress, PhaseSpec, PhaseStand, PlanRecording, Questionnaire, QuestionnaireSpec,
-    RecordingOutcome, Study,
+    AnswerFormat, ParticipantProgress, PhaseSpec, PlanRecording, Questionnaire, QuestionnaireSpec, RecordingOutcome,
+    Study,
 };
 use tomcom_session::questionnaire::AnswerValue;
 
+use super::assignment::made;
 use super::files;
 use crate::support::*;
 
@@ -147,22 +148,8 @@ fn the_person_is_asked_before_the_first_trial_and_only_then() {
     assert_eq!(asked(1), (3, 1), "before the first trial, and what is asked after it");
     assert_eq!(asked(2).1, 0, "not again before the second");
     // Once for each participant: the answers of a recording that is left out, and repeated, are there.
-    let (spec, _) = study.settings(WantedRecording { participant: 0, slot: 1, attempt: 1, instructed: true });
-    let mut made = PlanRecording {
-        recording: "2026-03-14-P01-1".to_string(),
-        code: spec.participant.code.clone(),
-        recorded_as: None,
-        kind: spec.participant.kind,
-        step: spec.step.expect("a step"),
-        consent: true,
-        instructed: true,
-        presses: 20,
-        stand: PhaseStand::default(),
-        waived: None,
-        excluded: Some("the tracker slipped".to_string()),
-        answered: BTreeSet::new(),
-        outcome: RecordingOutcome::Excluded { reason: "the tracker slipped".to_string() },
-    };
+    let mut made = made(&study, 1, 1, RecordingOutcome::Excluded { reason: "the tracker slipped".to_string() });
+    made.excluded = Some("the tracker slipped".to_string());
     let phases = |made: &PlanRecording| {
         let made = std::slice::from_ref(made);
         let progress = ParticipantProgress::from_recordings(&study, 0, made).expect("a recording of the plan");

@@ -9,7 +9,7 @@ use tomcom_session::protocol::StudyPhase;
 use tomcom_session::settings::ProbeSpec;
 use tomcom_session::tutorial::{TutorialEvent, TutorialPageTurner};
 
-use super::{files, folder, study};
+use super::{Run, files, folder, study};
 use crate::support::*;
 
 const BY_PARTICIPANT: TutorialPageTurner = TutorialPageTurner::Participant;
@@ -27,34 +27,16 @@ fn a_probe_is_practised_only_where_the_session_has_probes() {
 }
 
 /// A recording of the tutorial alone.
-struct Lesson {
-    engine: SessionEngine,
-    log: LogWriter,
-    now_s: f64,
-}
-
-impl Lesson {
-    fn new(out: &Path) -> Lesson {
+impl Run {
+    fn lesson(out: &Path) -> Run {
         let mut files = files();
         files.spec.probes = Some(ProbeSpec::default());
         files.tutorial = Some(tutorial("sushi.toml"));
         files.spec = files.study().and_then(|study| study.tutorial_alone("P07")).expect("a tutorial");
-        let (log, engine) = live_recording(files, 0, out);
-        let mut lesson = Lesson { engine, log, now_s: 0.0 };
+        let mut lesson = Run::begin(files, 0, out);
         let begun = ProtocolEvent::PhaseStarted { phase: StudyPhase::Tutorial, number: 1 };
         assert_eq!(lesson.input(Event::Protocol(begun)), None);
         lesson
-    }
-
-    fn session(&self) -> &Session {
-        self.engine.session()
-    }
-
-    fn input(&mut self, event: Event) -> Option<String> {
-        self.now_s += 0.5;
-        let outcome = self.engine.input(at(self.now_s), event);
-        outcome.events.iter().for_each(|stamped| self.log.append(stamped).expect("the log can be written"));
-        outcome.refused
     }
 
     fn tell(&mut self, event: TutorialEvent) -> Option<String> {
@@ -93,7 +75,7 @@ impl Lesson {
 #[test]
 fn a_participant_goes_through_the_whole_tutorial() {
     let out = folder("tutorial_whole");
-    let mut lesson = Lesson::new(&out);
+    let mut lesson = Run::lesson(&out);
     while let Some((step, _)) = lesson.session().tutorial_step() {
         let step = step.clone();
         match step.kind {
@@ -154,7 +136,7 @@ fn a_participant_goes_through_the_whole_tutorial() {
 
 #[test]
 fn only_the_button_that_is_asked_for_moves_the_kitchen_on() {
-    let mut lesson = Lesson::new(&folder("tutorial_presses"));
+    let mut lesson = Run::lesson(&folder("tutorial_presses"));
     assert!(lesson.press("take rice").is_some(), "a text has no presses");
     lesson.turn_to("take");
     let empty = sight(lesson.session()).contents;
@@ -173,7 +155,7 @@ fn only_the_button_that_is_asked_for_moves_the_kitchen_on() {
 
 #[test]
 fn what_the_robot_shows_is_asked_of_nobody_and_framed_where_the_robot_does_it() {
-    let mut lesson = Lesson::new(&folder("tutorial_robot"));
+    let mut lesson = Run::lesson(&folder("tutorial_robot"));
     lesson.turn_to("robot");
     let page = sight(lesson.session()).tutorial.expect("a page");
     assert_eq!(page.hint, None, "the participant has nori, too, and is not to take it");
@@ -187,11 +169,11 @@ fn what_the_robot_shows_is_asked_of_nobody_and_framed_where_the_robot_does_it() 
 
 #[test]
 fn an_order_may_be_made_in_another_order_than_the_file_has_it() {
-    let mut lesson = Lesson::new(&folder("tutorial_any_order"));
+    let mut lesson = Run::lesson(&folder("tutorial_any_order"));
     lesson.turn_to("order");
     let step = lesson.session().tutorial_step().expect("a step").0.clone();
     let mut presses = 0;
-    let mut press = |lesson: &mut Lesson, button: &str, is_right: bool| {
+    let mut press = |lesson: &mut Run, button: &str, is_right: bool| {
         assert_eq!(lesson.press(button), None);
         presses += usize::from(is_right);
         let page = sight(lesson.session()).tutorial.expect("a page");
@@ -228,7 +210,7 @@ fn a_tutorial_in_another_language_than_the_page_is_told_before_it_begins() {
 
 #[test]
 fn a_press_after_the_last_one_is_no_mistake() {
-    let mut lesson = Lesson::new(&folder("tutorial_more_presses"));
+    let mut lesson = Run::lesson(&folder("tutorial_more_presses"));
     lesson.turn_to("take");
     for button in ["take rice", "cooking_pot", "take nori"] {
         assert_eq!(lesson.press(button), None);
@@ -240,10 +222,9 @@ fn a_press_after_the_last_one_is_no_mistake() {
 
 #[test]
 fn hints_of_the_guided_order_fade() {
-    let mut lesson = Lesson::new(&folder("tutorial_hints"));
+    let mut lesson = Run::lesson(&folder("tutorial_hints"));
     lesson.turn_to("order");
-    let after_s =
-        |lesson: &Lesson| sight(lesson.session()).tutorial.and_then(|page| page.hint).map(|hint| hint.after_s);
+    let after_s = |lesson: &Run| sight(lesson.session()).tutorial.and_then(|page| page.hint).map(|hint| hint.after_s);
     let step = lesson.session().tutorial_step().expect("a step").0.clone();
     let (hints, wait_s) = (step.hints.expect("hints"), step.hint_after_s.expect("a time"));
     for (nth, button) in step.presses.iter().enumerate() {
@@ -255,7 +236,7 @@ fn hints_of_the_guided_order_fade() {
 
 #[test]
 fn the_page_is_told_recipes_only_while_they_are_shown() {
-    let mut lesson = Lesson::new(&folder("tutorial_recipes"));
+    let mut lesson = Run::lesson(&folder("tutorial_recipes"));
     let dishes = lesson.session().kitchen.dishes.len();
     while let Some((step, _)) = lesson.session().tutorial_step() {
         let (id, kind, has_dish) = (step.id.clone(), step.kind, step.dish.is_some());
@@ -283,7 +264,7 @@ fn the_page_is_told_recipes_only_while_they_are_shown() {
 
 #[test]
 fn the_wizard_can_skip_the_rest() {
-    let mut lesson = Lesson::new(&folder("tutorial_skipped"));
+    let mut lesson = Run::lesson(&folder("tutorial_skipped"));
     assert!(lesson.session().phase_lacks().is_some());
     assert!(lesson.tell(TutorialEvent::Ended { by: BY_PARTICIPANT }).is_some());
     assert_eq!(lesson.tell(TutorialEvent::Ended { by: TutorialPageTurner::Wizard }), None);
@@ -347,6 +328,8 @@ fn a_wrong_tutorial_names_file_line_and_what_would_be_right() {
         ("presses = [\"take rice\", \"cooking_pot\"]", "presses = [\"take rice\", \"oven\"]", "oven"),
         ("presses = [\"cook\", \"cooking_pot\"]", "presses = [\"cut\"]", "does nothing"),
         ("dish = \"salmon maki\"", "dish = \"pizza\"", "pizza"),
+        // Perhaps it is a tutorial of another kitchen than the session's.
+        ("dish = \"salmon maki\"", "dish = \"pizza\"", "\"sushi\""),
         ("point_at = [\"order_1\", ", "point_at = [\"order_9\", ", "order_9"),
         ("right = 3", "right = 4", "right = 4"),
         ("about = \"cutting_board\"", "about = \"oven\"", "oven"),
@@ -362,7 +345,7 @@ fn a_wrong_tutorial_names_file_line_and_what_would_be_right() {
 
 #[test]
 fn cards_that_were_shown_for_their_time_do_not_come_back() {
-    let mut lesson = Lesson::new(&folder("tutorial_cards"));
+    let mut lesson = Run::lesson(&folder("tutorial_cards"));
     lesson.turn_to("recipes");
     assert!(!sight(lesson.session()).tutorial.expect("a page").cards.is_empty());
     assert_eq!(lesson.tell(TutorialEvent::CardsHidden { step: "recipes".to_string() }), None);
@@ -375,9 +358,9 @@ fn cards_that_were_shown_for_their_time_do_not_come_back() {
 #[test]
 fn the_time_of_recipe_cards_continues_when_they_are_shown_again() {
     let out = folder("tutorial_cards_time");
-    let mut lesson = Lesson::new(&out);
+    let mut lesson = Run::lesson(&out);
     lesson.turn_to("recipes");
-    let left_s = |lesson: &Lesson| sight(lesson.session()).tutorial.and_then(|page| page.left_s);
+    let left_s = |lesson: &Run| sight(lesson.session()).tutorial.and_then(|page| page.left_s);
     assert_eq!(left_s(&lesson), Some(60.0));
     for left in [59.5, 59.0] {
         // The lesson's clock goes on by half a second with every event.

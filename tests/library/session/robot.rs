@@ -1,7 +1,5 @@
 //! The robot stopped, held, skipped and driven, and corrections of the kitchen.
 
-use std::convert::Infallible;
-
 use tomcom_core::robot::IdleReason;
 use tomcom_core::robot::policy::own_ways;
 use tomcom_people::participant::population::{Population, TraitSpread};
@@ -24,10 +22,6 @@ fn a_stopped_robot_gives_up_its_press_and_waits_for_the_wizard() {
     assert_eq!(goes_on, [("robot_resumed", 61.0), ("robot_intends", 61.0)]);
 }
 
-fn by_wizard(event: fn(Sender) -> Event) -> Event {
-    event(Sender::Wizard)
-}
-
 fn driven(button: &str) -> Event {
     Event::RobotDriven { by: Sender::Wizard, button: button.to_string() }
 }
@@ -42,16 +36,16 @@ fn run_on(engine: &mut SessionEngine, seconds: f64) -> Vec<(&'static str, f64)> 
 #[test]
 fn a_held_robot_waits_before_its_press_until_it_is_released() {
     let mut engine = engine(|_| ());
-    check(&mut engine, &[(0.0, Event::TrialStarted), (0.5, by_wizard(|by| Event::RobotHeld { by }))]);
+    check(&mut engine, &[(0.0, Event::TrialStarted), (0.5, Event::RobotHeld { by: Sender::Wizard })]);
     assert_eq!(run_on(&mut engine, 60.0), [("marker", 60.0)]);
     assert!(engine.session().robot.held && engine.session().robot.intention.is_some());
-    assert!(refused(&mut engine, 60.0, by_wizard(|by| Event::RobotHeld { by })).contains("held already"));
-    check(&mut engine, &[(61.0, by_wizard(|by| Event::RobotReleased { by }))]);
+    assert!(refused(&mut engine, 60.0, Event::RobotHeld { by: Sender::Wizard }).contains("held already"));
+    check(&mut engine, &[(61.0, Event::RobotReleased { by: Sender::Wizard })]);
     let goes_on = run_on(&mut engine, 61.5);
     assert_eq!(goes_on[0], ("press", 61.0), "it touches as soon as it may: {goes_on:?}");
-    assert!(refused(&mut engine, 62.0, by_wizard(|by| Event::RobotReleased { by })).contains("not held"));
+    assert!(refused(&mut engine, 62.0, Event::RobotReleased { by: Sender::Wizard }).contains("not held"));
     // Held without a press on its way, it sets out for none.
-    check(&mut engine, &[(62.0, Event::RobotStopped), (62.1, by_wizard(|by| Event::RobotHeld { by }))]);
+    check(&mut engine, &[(62.0, Event::RobotStopped), (62.1, Event::RobotHeld { by: Sender::Wizard })]);
     check(&mut engine, &[(62.2, Event::RobotResumed)]);
     assert_eq!(run_on(&mut engine, 80.0), [("marker", 80.0)]);
 }
@@ -63,14 +57,14 @@ fn a_skipped_press_is_given_up_and_not_decided_for_again_at_once() {
     let kitchen = engine.session().kitchen.clone();
     let intention = |engine: &SessionEngine| engine.session().robot.intention.map(|(button, ..)| button);
     let first = intention(&engine).expect("it sets out at once");
-    let kinds = check(&mut engine, &[(0.5, by_wizard(|by| Event::RobotSkipped { by }))]);
+    let kinds = check(&mut engine, &[(0.5, Event::RobotSkipped { by: Sender::Wizard })]);
     assert_eq!(kinds[..2], [("robot_skipped", 0.5), ("robot_aborts", 0.5)], "{kinds:?}");
     assert_ne!(intention(&engine), Some(first), "{}", kitchen.button(Agent::Robot, first).name);
     // Where only one press helps, the robot waits; a while later it may do that press all the same.
     let mut lonely = self::engine(|_| ());
     check(&mut lonely, &[(0.0, Event::TrialStarted), (0.1, corrected("robot_hand", "crab raw"))]);
     let only = intention(&lonely).expect("what is in the way is thrown away");
-    let kinds = check(&mut lonely, &[(0.2, by_wizard(|by| Event::RobotSkipped { by }))]);
+    let kinds = check(&mut lonely, &[(0.2, Event::RobotSkipped { by: Sender::Wizard })]);
     if kinds.iter().any(|(kind, _)| *kind == "robot_idles") {
         assert_eq!(lonely.session().robot.idle, Some((IdleReason::Skipped, Vec::new())));
         let kinds = run_on(&mut lonely, 5.3);
@@ -78,14 +72,14 @@ fn a_skipped_press_is_given_up_and_not_decided_for_again_at_once() {
         assert_eq!(intention(&lonely), Some(only));
     }
     check(&mut lonely, &[(6.0, Event::RobotStopped)]);
-    let told = refused(&mut lonely, 6.5, by_wizard(|by| Event::RobotSkipped { by }));
+    let told = refused(&mut lonely, 6.5, Event::RobotSkipped { by: Sender::Wizard });
     assert!(told.contains("not on its way to a press"), "{told}");
 }
 
 #[test]
 fn a_driven_robot_does_the_press_that_the_wizard_chose_also_while_it_is_held() {
     let mut engine = engine(|_| ());
-    check(&mut engine, &[(0.0, Event::TrialStarted), (0.2, by_wizard(|by| Event::RobotHeld { by }))]);
+    check(&mut engine, &[(0.0, Event::TrialStarted), (0.2, Event::RobotHeld { by: Sender::Wizard })]);
     // Trash with an empty hand has no effect, and is pressed all the same.
     for (seconds, button) in [(0.5, "trash"), (20.0, "take nori")] {
         let kinds = check(&mut engine, &[(seconds, driven(button))]);
@@ -164,10 +158,10 @@ fn done(events: &[TimestampedEvent]) -> Vec<String> {
 /// The human presses at the trial's start.
 fn at_a_standstill(arm: ArmKind, initiative_s: f64) -> SessionEngine {
     let mut engine = engine_with_orders(arm, initiative_s, ["shrimp nigiri", "crab maki"]);
-    check(&mut engine, &[(0.0, Event::TrialStarted), (0.0, by_wizard(|by| Event::RobotHeld { by }))]);
+    check(&mut engine, &[(0.0, Event::TrialStarted), (0.0, Event::RobotHeld { by: Sender::Wizard })]);
     let contents = [("assembly_board", "rice shaped + nori"), ("cooking_pot", "shrimp cooked"), ("robot_hand", "nori")];
     check(&mut engine, &contents.map(|(location, content)| (0.0, corrected(location, content))));
-    check(&mut engine, &[(0.0, press("trash")), (0.0, by_wizard(|by| Event::RobotReleased { by }))]);
+    check(&mut engine, &[(0.0, press("trash")), (0.0, Event::RobotReleased { by: Sender::Wizard })]);
     engine
 }
 
@@ -219,11 +213,7 @@ fn needless(name: &str, population: Population, (trials, seconds): (u64, f64)) {
         })
         .unassisted();
         let mut events = Vec::new();
-        let keep = |stamped: &TimestampedEvent| {
-            events.push(stamped.clone());
-            Ok::<(), Infallible>(())
-        };
-        headless::run(&mut engine, keep).unwrap_or_else(|never| match never {});
+        headless::run(&mut engine, |stamped| events.push(stamped.clone()));
         let mut cost = CostToGo::new(kitchen.clone());
         let mut session = Session::new(kitchen.clone(), engine.session().spec.clone(), trial);
         let initiative = at(session.spec.robot.initiative_s);

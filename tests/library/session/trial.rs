@@ -88,10 +88,9 @@ fn a_served_order_is_shown_as_served_then_cleared_then_there_is_a_new_one() {
         served = served.or(engine.session().served.first().map(|served| served.time));
         let kitchen = engine.session().kitchen.clone();
         let mut cost = CostToGo::new(kitchen.clone());
-        if let Some(button) = helpful(&kitchen, &mut cost, engine.session().state)
+        if let Some((_, name)) = helpful(&kitchen, &mut cost, engine.session().state, &[Agent::Human])
             && engine.session().is_running()
         {
-            let name = kitchen.button(Agent::Human, button).name.clone();
             let outcome = engine.input(due, press(&name));
             served = served.or(engine.session().served.first().map(|served| served.time));
             outcome.events.iter().filter(|_| served.is_some()).for_each(|s| after.push((s.event.kind(), s.time)));
@@ -102,15 +101,17 @@ fn a_served_order_is_shown_as_served_then_cleared_then_there_is_a_new_one() {
     assert_eq!((first("order_cleared"), first("order_shown")), (Some(2.0), Some(5.0)));
 }
 
-/// A press of the human that brings the orders nearer.
-fn helpful(kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Option<ButtonId> {
+/// A press of one of these agents that brings the orders nearer.
+fn helpful(kitchen: &Kitchen, cost: &mut CostToGo, state: State, agents: &[Agent]) -> Option<(Agent, String)> {
     let recipes = kitchen.true_recipes();
     let here = cost.all_orders(state, &recipes);
-    let mut buttons = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
-    buttons.find(|&button| {
-        let next = kitchen.press(state, &recipes, Agent::Human, button);
-        next.is_some_and(|next| cost.all_orders(next, &recipes) < here)
-    })
+    let buttons = |&agent: &Agent| (0..kitchen.buttons[agent.index()].len()).map(move |index| (agent, index));
+    let mut presses = agents.iter().flat_map(buttons).map(|(agent, index)| (agent, ButtonId(index as u8)));
+    let (agent, button) = presses.find(|&(agent, button)| {
+        let after = kitchen.press(state, &recipes, agent, button);
+        after.is_some_and(|after| cost.all_orders(after, &recipes) < here)
+    })?;
+    Some((agent, kitchen.button(agent, button).name.clone()))
 }
 
 #[test]
@@ -457,22 +458,6 @@ impl Recorded {
     }
 }
 
-/// A press of either agent that loses nothing.
-fn best(kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> (Agent, String) {
-    let recipes = kitchen.true_recipes();
-    let here = cost.all_orders(state, &recipes);
-    for agent in [Agent::Human, Agent::Robot] {
-        for index in 0..kitchen.buttons[agent.index()].len() {
-            let button = ButtonId(index as u8);
-            let press = kitchen.press(state, &recipes, agent, button);
-            if press.is_some_and(|after| cost.all_orders(after, &recipes) + 1 == here) {
-                return (agent, kitchen.button(agent, button).name.clone());
-            }
-        }
-    }
-    panic!("no press brings the orders nearer");
-}
-
 #[test]
 fn an_order_takes_the_time_from_its_appearance_and_every_lost_press() {
     let kitchen = kitchen();
@@ -491,7 +476,8 @@ fn an_order_takes_the_time_from_its_appearance_and_every_lost_press() {
     recorded.press(Agent::Human, "serve 1");
     let mut served_s = Vec::new();
     while served_s.len() < 2 {
-        let (agent, button) = best(&kitchen, &mut cost, recorded.session.state);
+        let press = helpful(&kitchen, &mut cost, recorded.session.state, &Agent::BOTH);
+        let (agent, button) = press.expect("a press that brings the orders nearer");
         recorded.press(agent, &button);
         if recorded.session.served.len() > served_s.len() {
             served_s.push((recorded.now_s, button));

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::{AnnotationTier, CODES, RecordingAnnotations};
+use super::{AnnotationTier, CODES, RecordingAnnotations, on_one_line};
 use tomcom_core::base::time::SessionTime;
 
 /// How a file begins that nobody has saved in BORIS since, which writes projects in one line.
@@ -81,8 +81,7 @@ pub fn text(annotations: &RecordingAnnotations) -> String {
 
 /// A word that BORIS takes as one modifier.
 fn modifier(words: &str) -> String {
-    let words: String =
-        words.chars().map(|letter| if letter.is_control() || letter == '|' { ' ' } else { letter }).collect();
+    let words = on_one_line(words).replace('|', " ");
     // BORIS takes what stands in parentheses for a key.
     words.replace(" (", ", ").replace(')', "").trim().to_string()
 }

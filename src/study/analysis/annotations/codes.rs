@@ -13,6 +13,7 @@ use super::elan::RECORDING;
 use super::{CODES, ERRORS};
 use tomcom_core::measures::raters::{ErrorCauseCode, ErrorCauseKind};
 use tomcom_session::files::file_error::{FileError, FileResult};
+use tomcom_session::log::rater_codes::wrong_line;
 
 /// Farthest from the beginning of an error at which its code can begin, in seconds.
 const NEAR_S: f64 = 2.0;
@@ -103,11 +104,7 @@ impl AnnotatedRecording {
 pub fn from_elan(path: &Path, text: &str) -> FileResult<Vec<AnnotatedCode>> {
     // Up to where lines were counted, and the line there.
     let (mut counted, mut line) = (0, 1);
-    let wrong = |line: usize, found: String, remedy: &str| {
-        let before: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
-        let length = text[before..].lines().next().map_or(0, str::len);
-        FileError::at(path, text, Some(before..before + length), found, remedy.to_string())
-    };
+    let wrong = |line: usize, found: String, remedy: &str| wrong_line(path, text, line, found, remedy);
     let mut reader = Reader::from_str(text);
     let mut read = AnnotatedRecording::default();
     let mut times: BTreeMap<String, f64> = BTreeMap::new();

@@ -3,7 +3,7 @@
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, BytesText, Event as XmlEvent};
 
-use super::{CODES, RecordingAnnotations};
+use super::{CODES, RecordingAnnotations, on_one_line};
 
 /// Comment by which a file is known that nobody has saved in ELAN since.
 pub const UNTOUCHED: &str = " written by tomcom export ";
@@ -35,11 +35,10 @@ impl Xml {
         self.event(XmlEvent::Empty(BytesStart::new(name).with_attributes(attributes.iter().copied())));
     }
 
-    /// An element with a text, without control characters, which XML cannot hold.
+    /// An element with a text.
     fn text(&mut self, name: &str, attributes: Attributes, words: &str) {
         self.open(name, attributes);
-        let words: String = words.chars().map(|letter| if letter.is_control() { ' ' } else { letter }).collect();
-        self.event(XmlEvent::Text(BytesText::new(&words)));
+        self.event(XmlEvent::Text(BytesText::new(&on_one_line(words))));
         self.close(name);
     }
 }

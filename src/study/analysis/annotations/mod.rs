@@ -197,6 +197,11 @@ impl AnnotationCollector {
     }
 }
 
+/// Without control characters, which the formats cannot hold.
+fn on_one_line(words: &str) -> String {
+    words.chars().map(|letter| if letter.is_control() { ' ' } else { letter }).collect()
+}
+
 /// A code in words: "slip", "belief: cooking_pot".
 fn code_words(code: &ErrorCauseCode) -> String {
     match code.aspect() {

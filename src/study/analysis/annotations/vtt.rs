@@ -1,6 +1,6 @@
 //! Annotations as subtitles (WebVTT), which players show over the first film.
 
-use super::RecordingAnnotations;
+use super::{RecordingAnnotations, on_one_line};
 
 /// How a file begins that this program wrote.
 pub const UNTOUCHED: &str = "WEBVTT written by tomcom export";
@@ -29,6 +29,5 @@ fn clock(ms: u64) -> String {
 
 /// On one line, without what the format takes for its own signs.
 fn plain(words: &str) -> String {
-    let words: String = words.chars().map(|letter| if letter.is_control() { ' ' } else { letter }).collect();
-    words.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+    on_one_line(words).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

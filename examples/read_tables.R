@@ -9,13 +9,13 @@ trials <- read.csv(file.path(folder, "trials.csv"), na.strings = "", stringsAsFa
 actions <- read.csv(file.path(folder, "actions.csv"), na.strings = "", stringsAsFactors = FALSE)
 
 counted <- trials[tolower(trials$counts) %in% c("true", "1"), ]
-for (condition in sort(unique(counted$study_arm))) {
-  rate <- counted$error_rate_human[counted$study_arm == condition]
+for (condition in sort(unique(counted$planned_arm))) {
+  rate <- counted$error_rate_human[counted$planned_arm == condition]
   cat(sprintf("error_rate_human %s: %.6f in %d trials\n", condition, mean(rate, na.rm = TRUE), sum(!is.na(rate))))
 }
 
 # One row for each participant, one column for each condition.
-paired <- tapply(counted$error_rate_human, list(counted$participant, counted$study_arm), mean, na.rm = TRUE)
+paired <- tapply(counted$error_rate_human, list(counted$participant, counted$planned_arm), mean, na.rm = TRUE)
 if (all(c("none", "wizard") %in% colnames(paired))) {
   difference <- paired[, "wizard"] - paired[, "none"]
   difference <- difference[!is.na(difference)]

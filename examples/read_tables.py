@@ -18,11 +18,11 @@ def main(folder):
     trials = pandas.read_csv(Path(folder) / "trials.csv")
     actions = pandas.read_csv(Path(folder) / "actions.csv", dtype={"cause": str})
     counted = trials[trials["counts"].astype(str).str.lower().isin(("true", "1"))]
-    by_condition = counted.groupby("study_arm")["error_rate_human"].agg(["count", "mean"])
+    by_condition = counted.groupby("planned_arm")["error_rate_human"].agg(["count", "mean"])
     for condition, row in by_condition.iterrows():
         print(f"error_rate_human {condition}: {row['mean']:.6f} in {int(row['count'])} trials")
     # One row for each participant, one column for each condition.
-    paired = counted.pivot_table(index="participant", columns="study_arm", values="error_rate_human").dropna()
+    paired = counted.pivot_table(index="participant", columns="planned_arm", values="error_rate_human").dropna()
     if {"none", "wizard"} <= set(paired.columns):
         difference = paired["wizard"] - paired["none"]
         print(f"paired_difference: {difference.mean():.6f} over {len(difference)} participants")

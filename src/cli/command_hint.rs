@@ -11,9 +11,13 @@ use super::args::Cli;
 use tomcom_session::log::LOG_NAME;
 
 /// Adds to the message about an unknown command which command takes a file of this name, to that about an option's values
-/// how they are separated, and to that about --csv which command writes tables; other messages, and those about a word that
-/// is like a command, stay as they are.
+/// how they are separated, to that about --csv which command writes tables, and to that about a missing argument an example of
+/// the command; other messages, and those about a word that is like a command, stay as they are.
 pub(super) fn add(mut error: clap::Error) -> clap::Error {
+    if let Some(example) = example(&error) {
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![StyledStr::from(example)]));
+        return error;
+    }
     // One of the values would be suggested alone, or another format.
     let better = with_commas(&error).map(|hint| (ContextKind::SuggestedValue, hint));
     if let Some((worse, hint)) = better.or_else(|| Some((ContextKind::SuggestedArg, tables(&error)?))) {
@@ -36,6 +40,22 @@ pub(super) fn add(mut error: clap::Error) -> clap::Error {
     }
     error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![hint]));
     error
+}
+
+/// The first example in the help of the command that lacks an argument.
+fn example(error: &clap::Error) -> Option<String> {
+    let (ErrorKind::MissingRequiredArgument, Some(ContextValue::StyledStr(usage))) =
+        (error.kind(), error.get(ContextKind::Usage))
+    else {
+        return None;
+    };
+    let usage = usage.to_string();
+    let name = usage.split_whitespace().skip_while(|word| *word != "tomcom").nth(1)?;
+    let help = Cli::command().find_subcommand(name)?.get_after_help()?.to_string();
+    let (_, example) = help.split_once("Example")?.1.split_once(": ")?;
+    let continued = example.lines().take_while(|line| line.ends_with('\\')).count();
+    let lines = example.lines().take(continued + 1).map(|line| line.trim_end_matches('\\').trim());
+    Some(format!("for example: {}", lines.collect::<Vec<&str>>().join(" ")))
 }
 
 /// Where tables come from, for somebody who asks another command for them.

@@ -14,6 +14,7 @@ use crate::run::recording_list::{self, RecordingListDetail};
 use tomcom_core::base::text::count;
 use tomcom_session::log::{LOG_NAME, LogReader};
 use tomcom_session::person_code;
+use tomcom_study::analysis::recording_summary::ListedRecording;
 use tomcom_study::files::recordings;
 use tomcom_study::gathered::GatheredRecordings;
 use tomcom_study::planned_trial::left_out_in_words;
@@ -48,10 +49,12 @@ pub(super) fn list(args: &ListArgs) -> Result<(), Failure> {
     let begun = |number: usize| bar.set_length(number as u64);
     let (mut list, _) = recording_list::list(&args.folder, RecordingListDetail::WithErrors, begun, || bar.inc(1))?;
     bar.finish_and_clear();
-    list.recordings.retain(|one| {
-        let line = one.cells().join(" ").to_lowercase();
-        args.words.iter().all(|word| line.contains(&word.to_lowercase()))
-    });
+    let has =
+        |one: &ListedRecording, word: &String| one.cells().join(" ").to_lowercase().contains(&word.to_lowercase());
+    for word in args.words.iter().filter(|word| !list.recordings.iter().any(|one| has(one, word))) {
+        put_aside(&format!("no recording in {} has \"{word}\" in its line\n", args.folder.display()));
+    }
+    list.recordings.retain(|one| args.words.iter().all(|word| has(one, word)));
     print(args.format, &list, || list.describe(columns()))
 }
 

@@ -91,6 +91,8 @@ pub(super) fn progress(of: u64, what: &str) -> ProgressBar {
         && let Ok(style) = ProgressStyle::with_template(&format!("{{bar:40}} {{pos}}/{{len}} {what}, {{eta}} left"))
     {
         bar.set_style(style);
+        // Else nothing is seen until the first step is done.
+        bar.tick();
     }
     bar
 }

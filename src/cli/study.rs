@@ -76,13 +76,15 @@ impl From<StudyError> for Failure {
 
 /// Runs the command `tomcom study`.
 pub(super) fn study(args: &StudyArgs) -> Result<(), Failure> {
-    let extent =
-        AnalysisScope { concepts: !args.skip.contains(&Skip::Concepts), events: !args.skip.contains(&Skip::Events) };
-    let raters = args.raters.as_ref().map(|raters| two_raters(raters, "--raters")).transpose()?;
+    let scope = AnalysisScope {
+        concepts: !args.skip.contains(&Skip::Concepts),
+        events: !args.skip.contains(&Skip::Events),
+        raters: args.raters.as_ref().map(|raters| two_raters(raters, "--raters")).transpose()?,
+    };
     let paths = if args.from.is_empty() { args.paths.clone() } else { args.from.clone() };
     // The parts of an analysis are joined into a folder that the option `--out` names.
     let out = args.out.clone().unwrap_or_else(|| paths[0].join("study"));
-    let request = AnalysisRequest { paths, out, extent, raters, frozen: args.frozen.clone() };
+    let request = AnalysisRequest { paths, out, scope, frozen: args.frozen.clone() };
     if !args.from.is_empty() {
         let (figures, report) = shards::join(&request)?;
         return told(args.format, &figures, &report);

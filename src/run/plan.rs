@@ -165,13 +165,16 @@ pub fn check_frozen(session: &Path, files: &SessionSetup, frozen: &Path) -> File
         let all: Vec<String> = listed.chain(files.map(|(path, ..)| path.display().to_string())).collect();
         if all.is_empty() { String::new() } else { format!("; changed, too: {}", all.join(", ")) }
     };
-    let right = |value: &str| format!("{value}, as it was frozen in {}", frozen.display());
+    let wrong_at = |path: &Path, text: &str, place, found: &str, before: &str, others: String| {
+        let right = format!("{before}, as it was frozen in {}", frozen.display());
+        FileError::at(path, text, place, format!("{found}, changed since the plan was frozen"), right + &others)
+    };
     let changed = plan.differs_from(&study);
     if let [first, others @ ..] = &changed[..] {
         let text = read_text(session)?;
         let [before, found] = first.settings();
         let place = place_of(&text, &first.path, first.nth);
-        return Err(FileError::at(session, &text, place, found, right(&before) + &too(others, &sources, &texts)));
+        return Err(wrong_at(session, &text, place, &found, &before, too(others, &sources, &texts)));
     }
     for (nth, (path, now, kind)) in sources.iter().enumerate() {
         let before = frozen_text(kind);
@@ -181,8 +184,8 @@ pub fn check_frozen(session: &Path, files: &SessionSetup, frozen: &Path) -> File
             let start = same.map(|(line, _)| line.len()).sum();
             let [found, wanted] =
                 [now, before].map(|text| text[start..].lines().next().unwrap_or("the end of the file"));
-            let right = right(wanted) + &too(&[], &sources[nth + 1..], &texts);
-            return Err(FileError::at(path, now, Some(start..start + found.len()), found.to_string(), right));
+            let others = too(&[], &sources[nth + 1..], &texts);
+            return Err(wrong_at(path, now, Some(start..start + found.len()), found, wanted, others));
         }
     }
     let Some((first, others)) = texts.split_first() else {
@@ -196,7 +199,7 @@ pub fn check_frozen(session: &Path, files: &SessionSetup, frozen: &Path) -> File
     let now = first.values[1].as_ref().and_then(|now| now.as_str()).filter(|now| !now.is_empty());
     let place = now.and_then(|now| Some(text.find(now)?..text.find(now)? + now.len()));
     let [before, _] = first.settings();
-    Err(FileError::at(&path, &text, place, first.to_string(), right(&before) + &too(others, &[], &[])))
+    Err(wrong_at(&path, &text, place, &first.to_string(), &before, too(others, &[], &[])))
 }
 
 /// Progress of the study as text for a terminal of this width. Where the conditions leave little room, the letters of the

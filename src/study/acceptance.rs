@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use crate::grouping::grouped;
 use crate::statistics::{mean, sample_sd};
 use crate::trial_statistics::{AskedItem, QuestionnaireAnswer, TrialStatistics};
 use tomcom_session::study_arm::StudyArm;
@@ -87,84 +88,63 @@ pub(super) fn answers_that_count(trials: &[TrialStatistics]) -> Vec<TrialAnswer<
 
 /// Scores of all questionnaires by condition, in the order in which questionnaires and conditions occur.
 pub(super) fn scores(answers: &[TrialAnswer]) -> Vec<ScoreSummary> {
-    let mut found: Vec<ScoreSummary> = Vec::new();
     // Every answer of an occasion has the occasion's score, so the score is taken from one answer only.
-    for of_occasion in answers.chunk_by(|(trial, one), (other_trial, other)| {
+    let occasions = answers.chunk_by(|(trial, one), (other_trial, other)| {
         (&trial.recording, &one.asked.questionnaire, one.before)
             == (&other_trial.recording, &other.asked.questionnaire, other.before)
-    }) {
+    });
+    let scored = occasions.filter_map(|of_occasion| {
         let (trial, answered) = of_occasion[0];
-        let Some(score) = answered.score else { continue };
-        let condition = asked_after(trial, answered);
-        let is_it =
-            |one: &ScoreSummary| (&one.questionnaire, one.condition) == (&answered.asked.questionnaire, condition);
-        match found.iter_mut().find(|one| is_it(one)) {
-            Some(one) => one.scores.push(score),
-            None => found.push(ScoreSummary {
-                questionnaire: answered.asked.questionnaire.clone(),
-                condition,
-                scores: vec![score],
-                mean: None,
-                sd: None,
-            }),
-        }
-    }
-    for one in &mut found {
-        one.mean = mean(one.scores.iter().copied());
-        one.sd = sample_sd(&one.scores);
-    }
-    found
+        Some(((&answered.asked.questionnaire, asked_after(trial, answered)), answered.score?))
+    });
+    let summary = |((questionnaire, condition), scores): ((&String, Option<StudyArm>), Vec<f64>)| ScoreSummary {
+        questionnaire: questionnaire.clone(),
+        condition,
+        mean: mean(scores.iter().copied()),
+        sd: sample_sd(&scores),
+        scores,
+    };
+    grouped(scored).into_iter().map(summary).collect()
 }
 
 /// Answers to the items of all questionnaires by condition, in the order in which items and conditions occur.
 pub(super) fn items(answers: &[TrialAnswer]) -> Vec<ItemSummary> {
-    let mut items: Vec<(ItemSummary, Vec<f64>)> = Vec::new();
-    for &(trial, answered) in answers {
-        let condition = asked_after(trial, answered);
-        let is_it = |(item, _): &(ItemSummary, Vec<f64>)| {
-            let (one, other) = (&item.asked, &answered.asked);
-            (&one.questionnaire, &one.item, item.condition, one.kind, item.points)
-                == (&other.questionnaire, &other.item, condition, other.kind, answered.points)
-        };
-        let at = match items.iter().position(is_it) {
-            Some(at) => at,
-            None => {
-                items.push((ItemSummary::without_answers(answered, condition), Vec::new()));
-                items.len() - 1
-            }
-        };
-        let (item, numbers) = &mut items[at];
-        let Some(answer) = &answered.answer else {
-            item.left_out += 1;
-            continue;
-        };
-        item.answers += 1;
-        numbers.extend(answer.number().map(|number| number as f64));
-        let point = answer.number().filter(|_| answered.points.is_some());
-        let chosen = answered.options.iter().enumerate().filter(|(_, option)| answer.options().contains(&option.id));
-        let counted = chosen.map(|(index, _)| index).chain(point.and_then(|point| usize::try_from(point - 1).ok()));
-        for index in counted {
-            if let Some(count) = item.counts.get_mut(index) {
-                *count += 1;
-            }
-        }
-    }
-    let with_mean = |(item, numbers): (ItemSummary, Vec<f64>)| ItemSummary { mean: mean(numbers.into_iter()), ..item };
-    items.into_iter().map(with_mean).collect()
+    let keyed = answers.iter().map(|&(trial, answered)| {
+        let AskedItem { questionnaire, item, kind, .. } = &answered.asked;
+        ((questionnaire, item, asked_after(trial, answered), *kind, answered.points), answered)
+    });
+    let groups = grouped(keyed).into_iter();
+    groups.map(|((_, _, condition, ..), answers)| ItemSummary::from_answers(condition, &answers)).collect()
 }
 
 impl ItemSummary {
-    fn without_answers(answered: &QuestionnaireAnswer, condition: Option<StudyArm>) -> ItemSummary {
-        let choices = answered.points.map_or(answered.options.len(), usize::from);
+    /// `answers`: at least one.
+    fn from_answers(condition: Option<StudyArm>, answers: &[&QuestionnaireAnswer]) -> ItemSummary {
+        let first = answers[0];
+        let mut counts = vec![0; first.points.map_or(first.options.len(), usize::from)];
+        let mut numbers = Vec::new();
+        for (answered, answer) in answers.iter().filter_map(|one| Some((one, one.answer.as_ref()?))) {
+            numbers.extend(answer.number().map(|number| number as f64));
+            let point = answer.number().filter(|_| answered.points.is_some());
+            let options = answered.options.iter().enumerate();
+            let chosen = options.filter(|(_, option)| answer.options().contains(&option.id));
+            let counted = chosen.map(|(index, _)| index).chain(point.and_then(|point| usize::try_from(point - 1).ok()));
+            for index in counted {
+                if let Some(count) = counts.get_mut(index) {
+                    *count += 1;
+                }
+            }
+        }
+        let answered = answers.iter().filter(|one| one.answer.is_some()).count();
         ItemSummary {
-            asked: answered.asked.clone(),
+            asked: first.asked.clone(),
             condition,
-            points: answered.points,
-            counts: vec![0; choices],
-            options: answered.options.iter().map(|option| option.text.clone()).collect(),
-            answers: 0,
-            left_out: 0,
-            mean: None,
+            points: first.points,
+            counts,
+            options: first.options.iter().map(|option| option.text.clone()).collect(),
+            answers: answered as u64,
+            left_out: (answers.len() - answered) as u64,
+            mean: mean(numbers.into_iter()),
         }
     }
 }

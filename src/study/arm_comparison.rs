@@ -114,14 +114,6 @@ impl StudyArmContrast {
             (false, false) => ContrastVerdict::NoDifference,
         }
     }
-
-    /// Takes over the corrected p value, with the level and the interval that belong to it.
-    fn correct(&mut self, p_holm: f64, contrasts: usize) {
-        let times = if self.contrast.p > 0.0 { p_holm / self.contrast.p } else { contrasts as f64 };
-        self.p_holm = p_holm;
-        self.level = 1.0 - (1.0 - LEVEL) / times;
-        self.interval = self.contrast.interval(self.level).map(f64::exp);
-    }
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -200,34 +192,41 @@ fn counted(trials: &[TrialStatistics], outcome: PrimaryOutcome) -> (Vec<StudyArm
     (rows, left_out)
 }
 
+/// Contrasts of the design's pairs of arms, each with its corrected p value. `contrast`: that of a pair; `p`: its p value.
+fn corrected<Contrast>(
+    design: &ArmComparisonDesign,
+    contrast: impl Fn((StudyArm, StudyArm)) -> Option<Contrast>,
+    p: fn(&Contrast) -> f64,
+) -> Vec<((StudyArm, StudyArm), Contrast, f64)> {
+    let pairs = arm_pairs(&design.arms).into_iter();
+    let all: Vec<_> = pairs.filter_map(|pair| Some((pair, contrast(pair)?))).collect();
+    let p_holm = holm(&all.iter().map(|(_, one)| p(one)).collect::<Vec<_>>());
+    all.into_iter().zip(p_holm).map(|((pair, one), p_holm)| (pair, one, p_holm)).collect()
+}
+
 fn contrasts(design: &ArmComparisonDesign, model: &LinearMixedModel) -> Vec<StudyArmContrast> {
-    let contrast = |pair: (StudyArm, StudyArm)| {
-        let contrast = model.contrast(&design.weights(pair, model.estimates.len()))?;
-        let (arm, against) = pair;
-        let (ratio, interval) = (contrast.estimate.exp(), [f64::NAN; 2]);
-        let doubt = None;
-        Some(StudyArmContrast { arm, against, ratio, level: LEVEL, interval, p_holm: contrast.p, doubt, contrast })
+    let contrast = |pair| model.contrast(&design.weights(pair, model.estimates.len()));
+    let all = corrected(design, contrast, |one: &MixedModelContrast| one.p);
+    let number = all.len();
+    let with_interval = |((arm, against), contrast, p_holm): ((StudyArm, StudyArm), MixedModelContrast, f64)| {
+        let times = if contrast.p > 0.0 { p_holm / contrast.p } else { number as f64 };
+        let level = 1.0 - (1.0 - LEVEL) / times;
+        let (ratio, interval) = (contrast.estimate.exp(), contrast.interval(level).map(f64::exp));
+        StudyArmContrast { arm, against, ratio, level, interval, p_holm, doubt: None, contrast }
     };
-    let mut all: Vec<StudyArmContrast> = arm_pairs(&design.arms).into_iter().filter_map(contrast).collect();
-    let corrected = holm(&all.iter().map(|one| one.contrast.p).collect::<Vec<_>>());
-    let contrasts = all.len();
-    all.iter_mut().zip(corrected).for_each(|(one, p)| one.correct(p, contrasts));
-    all
+    all.into_iter().map(with_interval).collect()
 }
 
 fn count_comparison(design: &ArmComparisonDesign) -> Option<NegativeBinomialComparison> {
     let model = design.counts()?;
-    let contrast = |pair: (StudyArm, StudyArm)| {
-        let contrast = model.contrast(&design.weights(pair, model.estimates.len()))?;
-        let (arm, against) = pair;
-        Some(NegativeBinomialContrast { arm, against, ratio: contrast.estimate.exp(), p_holm: contrast.p, contrast })
-    };
-    let mut contrasts: Vec<NegativeBinomialContrast> =
-        arm_pairs(&design.arms).into_iter().filter_map(contrast).collect();
-    let corrected = holm(&contrasts.iter().map(|one| one.contrast.p).collect::<Vec<_>>());
-    contrasts.iter_mut().zip(corrected).for_each(|(one, p)| one.p_holm = p);
+    let contrast = |pair| model.contrast(&design.weights(pair, model.estimates.len()));
+    let all = corrected(design, contrast, |one: &WaldContrast| one.p).into_iter();
+    let contrasts = all.map(|((arm, against), contrast, p_holm)| {
+        let ratio = contrast.estimate.exp();
+        NegativeBinomialContrast { arm, against, ratio, p_holm, contrast }
+    });
     let size = Some(model.size).filter(|size| size.is_finite());
-    Some(NegativeBinomialComparison { between_sd: model.between_sd, size, contrasts })
+    Some(NegativeBinomialComparison { between_sd: model.between_sd, size, contrasts: contrasts.collect() })
 }
 
 /// Holm's correction of p values for multiple tests: each p value is multiplied by the number of p values that are not
@@ -360,11 +359,10 @@ impl StudyArmTrial {
     }
 }
 
-#[derive(Clone, Debug, PartialEq)]
-pub struct ArmComparisonDesign {
+struct ArmComparisonDesign {
     trials: Vec<StudyArmTrial>,
     arms: Vec<StudyArm>,
-    periods: Vec<u32>,
+    periods: BTreeSet<u32>,
 }
 
 /// Every arm with the one without signals, every other one with the wizard's; else all with the first.
@@ -382,12 +380,10 @@ pub(crate) fn arm_pairs(arms: &[StudyArm]) -> Vec<(StudyArm, StudyArm)> {
 
 impl ArmComparisonDesign {
     /// The design for these trials, which must be ordered by participant and period.
-    pub fn new(trials: Vec<StudyArmTrial>) -> ArmComparisonDesign {
+    fn new(trials: Vec<StudyArmTrial>) -> ArmComparisonDesign {
         let has = |arm: &StudyArm| trials.iter().any(|trial| trial.arm == *arm);
         let arms = StudyArm::ALL.into_iter().filter(has).collect();
-        let mut periods: Vec<u32> = trials.iter().map(|trial| trial.period).collect();
-        periods.sort_unstable();
-        periods.dedup();
+        let periods: BTreeSet<u32> = trials.iter().map(|trial| trial.period).collect();
         ArmComparisonDesign { trials, arms, periods }
     }
 
@@ -411,7 +407,7 @@ impl ArmComparisonDesign {
     }
 
     /// The primary model, with `carry_over` including the previous arm; `None` where it cannot be estimated.
-    pub fn linear(&self, carry_over: bool) -> Option<LinearMixedModel> {
+    fn linear(&self, carry_over: bool) -> Option<LinearMixedModel> {
         let measurement = |(index, trial): (usize, &StudyArmTrial)| MixedModelMeasurement {
             participant: trial.participant,
             effects: self.effects(index, carry_over),
@@ -421,7 +417,7 @@ impl ArmComparisonDesign {
     }
 
     /// The negative binomial model of counts; `None` where the model cannot be estimated.
-    pub fn counts(&self) -> Option<NegativeBinomialModel> {
+    fn counts(&self) -> Option<NegativeBinomialModel> {
         let count = |(index, trial): (usize, &StudyArmTrial)| CountObservation {
             participant: trial.participant,
             effects: self.effects(index, false),
@@ -432,7 +428,7 @@ impl ArmComparisonDesign {
     }
 
     /// Weights of the fixed effects for the difference between two arms, in a model with `size` effects.
-    pub fn weights(&self, (arm, against): (StudyArm, StudyArm), size: usize) -> Vec<f64> {
+    fn weights(&self, (arm, against): (StudyArm, StudyArm), size: usize) -> Vec<f64> {
         let mut weights = vec![0.0; size];
         for (place, other) in self.arms.iter().enumerate().skip(1) {
             weights[place] = f64::from(i8::from(*other == arm) - i8::from(*other == against));

@@ -9,9 +9,6 @@ use crate::statistics::interval_where_known;
 use tomcom_session::plan::{PrimaryOutcome, StudyAims};
 use tomcom_session::study_arm::StudyArm;
 
-/// Seed of the bootstrap's random numbers: the same trials give the same interval.
-const SEED: u64 = 1;
-
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct StudyArmStatistic {
     /// The statistic over all trials of the arm; null where it cannot be computed.
@@ -63,7 +60,7 @@ impl StudyArmRow {
     fn new(arm: StudyArm, trials: &[&PoolTrialCounts]) -> StudyArmRow {
         let figure = |value: fn(&[&PoolTrialCounts]) -> Option<f64>| StudyArmStatistic {
             value: value(trials),
-            interval: interval_where_known(trials, SEED, value),
+            interval: interval_where_known(trials, value),
         };
         StudyArmRow {
             arm,

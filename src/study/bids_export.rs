@@ -45,6 +45,8 @@ pub struct BidsRecording {
     pub recording: PathText,
     /// Common beginning of the paths of the recording's files in the data set.
     pub place: String,
+    /// Why the analysis leaves it out; without words that somebody typed unless those are exported.
+    pub left_out: Option<String>,
     pub rows: BidsRowCounts,
 }
 
@@ -81,7 +83,7 @@ pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: imp
     let plans: BTreeSet<String> =
         planned.iter().filter_map(|one| Some(one.header.session.step.as_ref()?.plan.clone())).collect();
     let plans: Vec<String> = plans.into_iter().collect();
-    let root = dataset_files(&plans, &participants(&planned)?, with_words);
+    let root = dataset_files(&plans, &participants(&planned, &told)?, with_words);
     asked.iter().chain(&root).try_for_each(|file| tree.write(file))?;
     Ok(BidsSummary {
         folder: folder.to_path_buf().into(),
@@ -160,7 +162,11 @@ fn read(
             phenotypes.note(&one.label, &one.session, &session);
         }
     }
-    let counts = standing::exclusion_status(&session, &log)?.counts();
+    let standing = standing::exclusion_status(&session, &log)?;
+    let counts = standing.counts();
+    // What somebody typed stands behind the colon.
+    let words = |why: String| if counts || with_words { why } else { why.split(':').take(1).collect() };
+    let left_out = standing.left_out(&session, log.ending()).map(words);
     let is_complete = log.ending() == LogEnding::Closed;
     let name = one.recording.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let row = BidsSession {
@@ -171,6 +177,7 @@ fn read(
         ended: tables.ended,
         is_complete,
         counts,
+        left_out: left_out.as_deref(),
     };
     let row = row.line();
     let mut facts = [LongTableFacts::default(); 3];
@@ -181,18 +188,20 @@ fn read(
     for file in files {
         tree.write(&BidsFile { name: format!("{place}_{}", file.name), ..file })?;
     }
-    Ok((row, BidsRecording { recording: one.recording.clone().into(), place, rows }))
+    Ok((row, BidsRecording { recording: one.recording.clone().into(), place, left_out, rows }))
 }
 
-fn participants(planned: &[Planned]) -> FileResult<Vec<BidsParticipant>> {
+fn participants(planned: &[Planned], told: &[BidsRecording]) -> FileResult<Vec<BidsParticipant>> {
     let mut rows: Vec<BidsParticipant> = Vec::new();
-    for one in planned {
+    for (one, told) in planned.iter().zip(told) {
+        let left_out = usize::from(told.left_out.is_some());
         let spec = &one.header.session;
         let consent = reading::consent(&one.recording)?;
         let consent = consent.map(|given| [Some(given.place().to_string()), given.started, Some(given.digest)]);
         match rows.iter_mut().find(|row| row.label == one.label) {
             Some(row) => {
                 row.recordings += 1;
+                row.left_out += left_out;
                 // Recordings are in the order of their times, so the first consent counts.
                 if let Some(consent) = consent.filter(|_| row.consent == [None, None, None]) {
                     row.consent = consent;
@@ -204,6 +213,7 @@ fn participants(planned: &[Planned]) -> FileResult<Vec<BidsParticipant>> {
                 kind: spec.participant.kind.name().to_string(),
                 group: spec.step.as_ref().map(|step| step.group.clone()),
                 recordings: 1,
+                left_out,
                 consent: consent.unwrap_or_default(),
             }),
         }
@@ -213,7 +223,10 @@ fn participants(planned: &[Planned]) -> FileResult<Vec<BidsParticipant>> {
 
 pub fn describe(summary: &BidsSummary) -> String {
     let rows = |of: fn(&BidsRowCounts) -> u64| summary.recordings.iter().map(|one| of(&one.rows)).sum::<u64>();
-    let line = |one: &BidsRecording| format!("  {} from {}\n", one.place, one.recording.display());
+    let line = |one: &BidsRecording| {
+        let left_out = one.left_out.as_ref().map_or(String::new(), |why| format!(" (left out of the analysis: {why})"));
+        format!("  {} from {}{left_out}\n", one.place, one.recording.display())
+    };
     let recordings: String = summary.recordings.iter().map(line).collect();
     let changed = summary.changed_codes.iter();
     let line = |(code, label): &(String, String)| {

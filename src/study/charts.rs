@@ -283,7 +283,7 @@ pub fn league(rows: &[TournamentRow]) -> String {
         chart.point("assisted", x, *value, &format!("{}: {value:.1}", row.concept));
         chart.words("strong", x + 0.04, *value, true, &minus(&format!("{value:.1}")));
     }
-    document(&chart.finish("Net saving by concept, with intervals of 95 %"), STYLE)
+    document(&chart.finish("Net saving by concept, with intervals of 95 %"))
 }
 
 /// Width of a chart that fills a column of the report; wider ones fill both, so that all have letters of one size.
@@ -323,7 +323,7 @@ pub fn power(found: &PowerSummary) -> String {
         let name = match (test.method, has_anova) {
             (SignificanceTestMethod::MixedAnova, _) => "paper's test".to_string(),
             (_, true) => "mixed model".to_string(),
-            (_, false) => format!("{} to {}", test.arm.name(), test.against.name()),
+            (_, false) => format!("{} to {}", test.arm.title(), test.against.title()),
         };
         names.extend(points.last().map(|(_, share)| (*share, (class, name))));
     }
@@ -335,7 +335,7 @@ pub fn power(found: &PowerSummary) -> String {
     let (x, y) = if found.is_null() { (0.0, 0.95 * most) } else { (0.4 * last, 0.12 * most) };
     chart.words("strong", x, y, true, title);
     chart.words("", x, y - 0.07 * most, true, "bands: 95 % intervals of the simulation");
-    document(&chart.finish(title), STYLE)
+    document(&chart.finish(title))
 }
 
 /// Heights of the names at the ends of lines, moved at least `gap` apart and at most `most` high.
@@ -516,8 +516,9 @@ impl SvgChart {
     }
 }
 
-pub fn document(chart: &Markup, style: &str) -> String {
-    let style = format!("<style>\n{style}svg {{ background: var(--paper); }}\n</style>\n");
+/// With the styles of the report, as a file of its own.
+pub fn document(chart: &Markup) -> String {
+    let style = format!("<style>\n{STYLE}svg {{ background: var(--paper); }}\n</style>\n");
     let chart = chart.0.replacen("<svg ", "<svg xmlns=\"http://www.w3.org/2000/svg\" ", 1);
     match chart.split_once('\n') {
         Some((head, body)) => format!("{head}\n{style}{body}"),

@@ -5,6 +5,8 @@
 //! second trial between the two starting groups. The additional improvement of the group whose second trial is assisted
 //! is the effect of assistance (the interaction of period and starting group; Senn 2002, Cross-over Trials, chapter 3).
 
+use std::collections::BTreeSet;
+
 use serde::{Serialize, Serializer};
 
 use super::trial_statistics::TrialStatistics;
@@ -135,16 +137,13 @@ impl AssistanceEffect {
 /// repeated a period, its last trial counts. Empty where the trials were planned in more than two arms, which are compared
 /// together instead ([`super::arm_comparison`]).
 pub fn pairs(trials: &[TrialStatistics], measure: StudyMeasure) -> PairedTrials {
-    let mut arms: Vec<StudyArm> = trials.iter().filter(|trial| trial.counts()).map(|trial| trial.planned_arm).collect();
-    arms.sort_unstable();
-    arms.dedup();
+    let counted = trials.iter().filter(|trial| trial.counts());
+    let arms: BTreeSet<StudyArm> = counted.map(|trial| trial.planned_arm).collect();
     let mut paired = PairedTrials::default();
     if arms.len() > 2 {
         return paired;
     }
-    let mut codes: Vec<&str> = trials.iter().map(|trial| trial.participant.as_str()).collect();
-    codes.sort_unstable();
-    codes.dedup();
+    let codes: BTreeSet<&str> = trials.iter().map(|trial| trial.participant.as_str()).collect();
     for code in codes {
         match pair(code, trials, measure) {
             Ok(pair) => paired.pairs.push(pair),

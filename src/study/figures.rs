@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use crate::acceptance::{Acceptance, ItemSummary, ScoreSummary, acceptance, answers_that_count, items, scores};
-use crate::analysis::offer_summary::OfferSummary;
+use crate::analysis::offer_summary::{OfferSummary, OfferTally};
 use crate::analysis::probe_figures::ProbeSummary;
 use crate::arm_comparison::{ArmAnalysis, ArmDeviation, StudyArmComparison, StudyConditionSummary};
 use crate::effect::AssistanceEffect;
@@ -224,7 +224,7 @@ impl StudySummary {
                 .and_then(|wizard| wizard.hits)
                 .and_then(|_| least_reliable(counting.iter().filter(|trial| trial.wizard.is_some()))),
             wizard,
-            offers: (!details.offers.is_empty()).then(|| details.offers.summary()),
+            offers: details.offers.map(OfferTally::summary),
             acceptance: acceptance(&counting),
             questionnaires: items(&answers_that_count(trials)),
             questionnaire_scores: scores(&answers_that_count(trials)),

@@ -2,16 +2,13 @@
 //! [`crate::analysis::fitting`].
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
-use crate::analysis::fitting::{
-    self, FitSettings, FitSummary, FittedRecordings, IntervalNarrowing, OtherModel, in_words,
-};
+pub use crate::analysis::fitting::FitTrials;
+use crate::analysis::fitting::{self, FitSettings, FitSummary, IntervalNarrowing, OtherModel, in_words};
 use crate::gathered::GatheredRecordings;
 use crate::grouping::grouped;
 use crate::parallel::WorkerPool;
 use crate::standing::exclusion_status;
-use tomcom_core::kitchen::Kitchen;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::mind::fitting::{FitObservations, ProbeAnswerObservation, TrialLikelihood, likelihood};
 use tomcom_core::mind::model::HumanModel;
@@ -20,16 +17,6 @@ use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::probes::{ProbeEvent, ProbeQuestion};
 use tomcom_session::replay::{RecordingReplay, SameKitchenCheck};
 use tomcom_session::{Event, probe_sampling};
-
-#[derive(Clone, Debug)]
-pub struct FitTrials {
-    pub kitchen: Arc<Kitchen>,
-    pub model: HumanModel,
-    pub others: Vec<OtherModel>,
-    /// Recordings that analyses do not count, each with the reason.
-    pub left_out: Vec<String>,
-    pub observations: Vec<FitObservations>,
-}
 
 impl FitTrials {
     /// Reads recordings for a fit, without practice and excluded ones; answers to freeze probes are read only with
@@ -136,8 +123,5 @@ fn fit_once(trials: &FitTrials, plan: &FitSettings, tried: impl Fn()) -> FitSumm
         let found = pool.each(&trials.observations, of_trial, || {});
         found.into_iter().fold(TrialLikelihood::default(), TrialLikelihood::plus)
     };
-    let number = trials.observations.len() as u64;
-    let recordings =
-        FittedRecordings { number, model: &trials.model, others: &trials.others, left_out: &trials.left_out };
-    fitting::fit(recordings, plan, of_all, tried)
+    fitting::fit(trials, plan, of_all, tried)
 }

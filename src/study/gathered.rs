@@ -96,28 +96,29 @@ impl GatheredRecordings {
             let all: Vec<&PathBuf> = same.all().map(|log| &logs[log].0).collect();
             let mut recordings: Vec<usize> = all.iter().filter_map(|log| lasts.get(*log).copied()).collect();
             let part = all.iter().find_map(|log| Some((*earlier.get(*log)?, folder(log))));
+            if recordings.len() + usize::from(part.is_some()) < 2 {
+                continue;
+            }
             let mut excluded = BTreeMap::new();
-            if recordings.len() > 1 || part.is_some() {
-                for &index in &recordings {
-                    let ruling = ruling(folder(opened[index].log()))?.filter(|ruling| ruling.excluded);
-                    excluded.insert(index, ruling.map(|ruling| format!("excluded: {}", ruling.reason)));
-                }
+            for &index in &recordings {
+                let ruling = ruling(folder(opened[index].log()))?.filter(|ruling| ruling.excluded);
+                excluded.insert(index, ruling.map(|ruling| format!("excluded: {}", ruling.reason)));
             }
             let (first, beside) = match part {
                 Some(part) => part,
                 None => {
                     let is_whole = |index: usize| same.longest.iter().any(|&log| logs[log].0 == *opened[index].log());
                     let mut ranks = BTreeMap::new();
-                    for &index in recordings.iter().filter(|_| recordings.len() > 1) {
+                    for &index in &recordings {
                         let codes = code_files(folder(opened[index].log()))?.len();
                         // Copies are named by whoever made them: "copy", "Copy of seed7-S001".
                         let name = (!opened[index].is_named, folder_name(opened[index].log()).len());
                         ranks.insert(index, (excluded[&index].is_some(), !is_whole(index), Reverse(codes), name));
                     }
                     // The sort is stable, so that the first by name counts among equal ones.
-                    recordings.sort_by_key(|index| ranks.get(index).copied());
-                    let Some(&first) = recordings.first() else { continue };
-                    (recordings.remove(0), folder(opened[first].log()))
+                    recordings.sort_by_key(|index| ranks[index]);
+                    let first = recordings.remove(0);
+                    (first, folder(opened[first].log()))
                 }
             };
             for index in recordings {

@@ -21,9 +21,9 @@ pub const RATES_AND_RATIO: &str = "Rates pool all presses of a condition; the ra
 /// Largest number of trials that are named as left out.
 const MOST_NAMED: usize = 3;
 
-/// One sentence for each contrast of the primary outcome: both rates, their ratio with its interval, and whether that
-/// shows a difference; before them, if there are several, one that says what they show together. Empty without trials
-/// that count.
+/// One sentence for each contrast of the primary outcome: whether a difference is shown, how many percent it is with its
+/// interval, both rates, and their ratio; before them, if there are several, one that says what they show together. Empty
+/// without trials that count.
 pub fn primary_outcome(figures: &StudySummary) -> Vec<String> {
     if let Some(found) = &figures.arms {
         let together = (found.contrasts.len() > 1).then(|| answer(found));
@@ -164,25 +164,34 @@ fn contrast(found: &StudyArmComparison, one: &StudyArmContrast) -> String {
         1 => String::new(),
         _ => format!(" ({} corrected for {contrasts} contrasts)", p_value(one.p_holm)),
     };
-    let interval = match low.is_finite() && high.is_finite() {
-        true => format!("{} interval {low:.2} to {high:.2}", level(one.level)),
-        false => "too few trials for an interval".to_string(),
+    let (in_percent, of_ratio) = match low.is_finite() && high.is_finite() {
+        true => (
+            format!("{} interval {} to {}", level(one.level), fewer_or_more(low), fewer_or_more(high)),
+            format!(", interval {low:.2} to {high:.2}"),
+        ),
+        false => ("too few trials for an interval".to_string(), String::new()),
     };
-    let alone = if one.doubt.is_some() { "by this model alone, " } else { "" };
-    let verdict = match (one.verdict(), one.ratio < 1.0) {
-        (ContrastVerdict::Shown, true) => format!("{alone}fewer in {arm} trials than in {against} trials"),
-        (ContrastVerdict::Shown, false) => format!("{alone}more in {arm} trials than in {against} trials"),
-        _ => "no difference shown".to_string(),
+    let shown = match (one.verdict(), one.doubt) {
+        (ContrastVerdict::Shown, None) => "",
+        (ContrastVerdict::Shown, Some(_)) => "by this model alone, ",
+        _ => "no difference shown: ",
     };
     let doubted = not_reliable(found, one).map_or(String::new(), |why| format!(" ({why})"));
     format!(
-        "Primary outcome, {} per 100 presses of the human: {arm} {:.1}, {against} {:.1}; ratio {:.2}{doubted}, {interval}: \
-         {verdict}{corrected}.",
+        "Primary outcome, {} per 100 presses of the human: {shown}{} in {arm} trials than in {against} trials ({in_percent}); of all presses, \
+         from {:.1} in {against} to {:.1} in {arm} trials; ratio {:.2}{doubted}{of_ratio}{corrected}.",
         found.outcome.title(),
-        found.per_100(one.arm),
+        fewer_or_more(one.ratio),
         found.per_100(one.against),
+        found.per_100(one.arm),
         one.ratio,
     )
+}
+
+/// A ratio as a change: "28 % fewer".
+fn fewer_or_more(ratio: f64) -> String {
+    let percent = 100.0 * (ratio - 1.0);
+    format!("{:.0} % {}", percent.abs(), if percent < 0.0 { "fewer" } else { "more" })
 }
 
 /// A confidence level as text: "95 %", "98.3 %".

@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use crate::grouping::grouped;
 use crate::roc::ConceptRocCurve;
-use crate::trial_statistics::{SignalSenderWithParameter, TrialStatistics, mean_length};
+use crate::trial_statistics::{SignalSenderWithParameter, TrialStatistics, TrialTotals};
 use tomcom_session::settings::ParticipantKind;
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -77,13 +77,11 @@ pub fn live_arms(trials: &[&TrialStatistics], roc: &[ConceptRocCurve]) -> Vec<Si
 }
 
 impl SignalSenderResults {
+    /// Beliefs are known in all of the trials.
     fn from_trials(arm: SignalSenderWithParameter, trials: &[&TrialStatistics]) -> SignalSenderResults {
-        let sum = |of: fn(&TrialStatistics) -> u64| trials.iter().map(|trial| of(trial)).sum::<u64>();
-        let beliefs = || trials.iter().filter_map(|trial| trial.beliefs.as_ref());
-        let lengths: Vec<u32> = beliefs().flat_map(|one| one.lengths.iter().copied()).collect();
-        let (presses, orders) = (sum(|trial| trial.human_presses), sum(|trial| trial.orders));
+        let totals = TrialTotals::from_trials(trials);
+        let (presses, orders, signals) = (totals.human_actions, totals.orders_served, totals.signals);
         let per_100 = |number: u64| (presses > 0).then(|| 100.0 * number as f64 / presses as f64);
-        let signals = sum(|trial| trial.signals);
         let share_of = Some(signals).filter(|&signals| signals > 0);
         let judged = trials.iter().map(|trial| match trial.signals {
             0 => Some(0),
@@ -94,13 +92,13 @@ impl SignalSenderResults {
         SignalSenderResults {
             arm,
             trials: trials.len() as u64,
-            belief_related_per_100: per_100(beliefs().map(|one| one.errors).sum()),
-            sequences_per_100: per_100(lengths.len() as u64),
-            mean_sequence_length: mean_length(&lengths),
+            belief_related_per_100: totals.belief_related_per_100,
+            sequences_per_100: totals.sequences_per_100,
+            mean_sequence_length: totals.mean_sequence_length,
             orders,
             orders_per_minute: (seconds > 0.0).then(|| 60.0 * orders as f64 / seconds),
             interruptions_per_100: per_100(signals),
-            contents_per_100: per_100(sum(|trial| trial.signal_contents)),
+            contents_per_100: per_100(trials.iter().map(|trial| trial.signal_contents).sum()),
             useless_per_100: useless.and_then(per_100),
             useless_share: useless.zip(share_of).map(|(useless, signals)| useless as f64 / signals as f64),
             prevented: None,

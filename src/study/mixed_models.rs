@@ -339,7 +339,7 @@ pub struct WaldContrast {
 }
 
 impl NegativeBinomialModel {
-    /// `None` if the fixed effects are collinear, or the search does not converge.
+    /// `trials`: ordered by participant. `None` if the fixed effects are collinear, or the search does not converge.
     pub fn fit(trials: &[CountObservation]) -> Option<NegativeBinomialModel> {
         let effects = trials.first()?.effects.len();
         let rows: Vec<f64> = trials.iter().flat_map(|one| one.effects.iter().copied()).collect();
@@ -354,8 +354,7 @@ impl NegativeBinomialModel {
         let logs = DVector::from_iterator(trials.len(), logs);
         let start = (x.transpose() * &x).cholesky()?.solve(&(x.transpose() * logs));
         let mut at: Vec<f64> = start.iter().copied().chain([-1.0, 2.0]).collect();
-        let groups = by_participant(trials);
-        let likelihood = |at: &[f64]| log_likelihood(&groups, effects, at);
+        let likelihood = |at: &[f64]| log_likelihood(trials, effects, at);
         let free = climb(&likelihood, &mut at)?;
         let (_, hessian) = derivatives(&likelihood, &at, &free);
         // Variables that lie at a bound are treated as known.
@@ -375,28 +374,19 @@ impl NegativeBinomialModel {
         let estimate = weights.iter().zip(&self.estimates).map(|(weight, effect)| weight * effect).sum::<f64>();
         let standard_error = weights.dot(&(&self.covariance * &weights)).sqrt();
         let z = estimate / standard_error;
-        let p = 2.0 * Normal::new(0.0, 1.0).ok()?.sf(z.abs());
+        let p = 2.0 * Normal::standard().sf(z.abs());
         (standard_error > 0.0).then_some(WaldContrast { estimate, standard_error, z, p })
     }
 }
 
-/// The trials of each participant, in the order of participants; trials of one participant keep their order.
-fn by_participant(trials: &[CountObservation]) -> Vec<Vec<&CountObservation>> {
-    let participants = trials.iter().map(|one| one.participant + 1).max().unwrap_or(0);
-    let mut groups = vec![Vec::new(); participants];
-    trials.iter().for_each(|one| groups[one.participant].push(one));
-    groups.retain(|own| !own.is_empty());
-    groups
-}
-
-/// The log likelihood of fixed effects, log standard deviation and log size, for the trials of each participant; the
-/// participants' random effects are integrated out by Laplace's method.
-fn log_likelihood(groups: &[Vec<&CountObservation>], effects: usize, at: &[f64]) -> f64 {
+/// The log likelihood of fixed effects, log standard deviation and log size; the participants' random effects are integrated
+/// out by Laplace's method.
+fn log_likelihood(trials: &[CountObservation], effects: usize, at: &[f64]) -> f64 {
     let (beta, sd, size) = (&at[..effects], at[effects].exp(), at[effects + 1].exp());
     let linear = |one: &CountObservation| {
         one.exposure.ln() + one.effects.iter().zip(beta).map(|(effect, beta)| effect * beta).sum::<f64>()
     };
-    let of_participant = |own: &Vec<&CountObservation>| {
+    let of_participant = |own: &[CountObservation]| {
         let own: Vec<(f64, f64)> = own.iter().map(|one| (one.count as f64, linear(one))).collect();
         // h(u) = sum log f(y | linear + sd u) - u^2 / 2 is concave; u is standard normal.
         let slopes = |u: f64| {
@@ -419,7 +409,7 @@ fn log_likelihood(groups: &[Vec<&CountObservation>], effects: usize, at: &[f64])
         let value: f64 = own.iter().map(|&(y, linear)| log_pmf(y, linear + sd * u, size)).sum();
         value - u * u / 2.0 - (-second).ln() / 2.0
     };
-    groups.iter().map(of_participant).sum()
+    trials.chunk_by(|a, b| a.participant == b.participant).map(of_participant).sum()
 }
 
 fn log_pmf(y: f64, log_mu: f64, size: f64) -> f64 {

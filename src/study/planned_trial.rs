@@ -52,9 +52,9 @@ impl PlannedTrialKey {
     /// What is wrong if `first` is another recording that counts for this trial; and what would be right.
     pub(crate) fn counted_twice(&self, first: &str) -> (String, String) {
         let PlannedTrialKey { plan, code, seed, period } = self;
-        let participant = seed.map_or_else(|| code.clone(), |seed| format!("seed{seed}-{code}"));
+        let simulated = seed.map_or(String::new(), |seed| format!(" (simulated, seed {seed})"));
         let found = format!(
-            "a second recording of trial {period} of {participant} in the plan \"{plan}\", which {first} is a recording of, too"
+            "a second recording of trial {period} of participant {code}{simulated} in the plan \"{plan}\", which {first} is a recording of, too"
         );
         let remedy = "one recording that counts for each trial: leave the other out (tomcom exclude RECORDING --reason …), \
                       or correct a code that was typed wrong (tomcom correct RECORDING --code CODE --reason …)";

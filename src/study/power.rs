@@ -285,13 +285,13 @@ impl SampleSizePower {
 }
 
 impl PowerTest {
-    /// The statistical test as text: "wizard to none, mixed ANOVA (the paper's test)".
+    /// The statistical test as text: "wizard to unassisted, mixed ANOVA (the paper's test, secondary)".
     pub fn title(&self) -> String {
         let method = match self.method {
-            SignificanceTestMethod::MixedAnova => "mixed ANOVA (the paper's test)",
-            SignificanceTestMethod::LinearMixedModel => "linear mixed model",
+            SignificanceTestMethod::MixedAnova => "mixed ANOVA (the paper's test, secondary)",
+            SignificanceTestMethod::LinearMixedModel => "linear mixed model (the plan's main comparison)",
         };
-        format!("{} to {}, {method}", self.arm.name(), self.against.name())
+        format!("{} to {}, {method}", self.arm.title(), self.against.title())
     }
 }
 
@@ -312,7 +312,10 @@ pub fn describe(found: &PowerSummary) -> String {
         count(found.pool, "simulated participant", "simulated participants"),
         found.seed,
     );
-    for (index, needed) in found.needed.iter().enumerate() {
+    // The plan's main comparison comes first.
+    let mut in_order: Vec<(usize, &RequiredSampleSize)> = found.needed.iter().enumerate().collect();
+    in_order.sort_by_key(|(_, needed)| needed.test.method == SignificanceTestMethod::MixedAnova);
+    for (index, needed) in in_order {
         text += &describe_test(found, index);
         text += &if found.is_null() { error_in_words(found, index) } else { power_in_words(found, needed, index) };
     }

@@ -77,7 +77,7 @@ impl RobotEventSummary {
 
 #[derive(Clone, Debug)]
 pub struct RobotEventTally {
-    figures: RobotEventSummary,
+    pub figures: RobotEventSummary,
     pub ended: Option<TrialEndReason>,
     mode: SafetyMode,
     clock: SessionTime,
@@ -136,10 +136,6 @@ impl RobotEventTally {
             }
             _ => {}
         }
-    }
-
-    pub fn into_figures(self) -> RobotEventSummary {
-        self.figures
     }
 }
 

@@ -235,17 +235,13 @@ pub fn hedges_g(a: &[f64], b: &[f64]) -> Option<f64> {
     (pooled > 0.0).then(|| (ma - mb) / pooled * (1.0 - 3.0 / (4.0 * (df + 2.0) - 9.0)))
 }
 
-/// Proportion `part` / `whole` with its Wilson score interval (Wilson 1927); `None` if `whole` is 0.
-pub(crate) fn share_interval(part: u64, whole: u64, level: f64) -> Option<ConfidenceInterval> {
-    wilson(part as f64 / whole as f64, whole as f64, level)
-}
-
-/// `n` may be the fractional number of observations with the same variance. `None` if `n` is 0.
+/// Proportion `p` of `n` with its Wilson score interval (Wilson 1927); `n` may be the fractional number of observations
+/// with the same variance. `None` if `n` is 0.
 pub(crate) fn wilson(p: f64, n: f64, level: f64) -> Option<ConfidenceInterval> {
     if n <= 0.0 {
         return None;
     }
-    let z = Normal::new(0.0, 1.0).ok()?.inverse_cdf(0.5 + level / 2.0);
+    let z = Normal::standard().inverse_cdf(0.5 + level / 2.0);
     let (centre, reach) = ((p + z * z / (2.0 * n)), z * (p * (1.0 - p) / n + z * z / (4.0 * n * n)).sqrt());
     let scale = 1.0 + z * z / n;
     Some(ConfidenceInterval { estimate: p, low: (centre - reach) / scale, high: (centre + reach) / scale, level })
@@ -269,18 +265,13 @@ pub(crate) fn sample_sd(values: &[f64]) -> Option<f64> {
 }
 
 const RESAMPLES: usize = 2000;
+const SEED: u64 = 1;
 const INTERVAL: [f64; 2] = [0.025, 0.975];
 
 /// Least number of units (such as participants) for an interval: resamples of fewer units are nearly all alike.
 pub(crate) const FEWEST: usize = 5;
 
-/// The 95 % interval. `seed`: of the random stream. Panics: there are no trials.
-pub fn interval<T: Copy>(trials: &[T], seed: u64, statistic: impl Fn(&[T]) -> f64) -> [f64; 2] {
-    let [interval] = intervals(trials, seed, |drawn| [statistic(drawn)]);
-    interval
-}
-
-/// The 95 % intervals of several statistics of the same resamples. Panics: there are no trials.
+/// The 95 % intervals of statistics of the same resamples. `seed`: of the random stream. Panics: there are no trials.
 pub fn intervals<T: Copy, const N: usize>(
     trials: &[T],
     seed: u64,
@@ -291,16 +282,13 @@ pub fn intervals<T: Copy, const N: usize>(
     std::array::from_fn(|index| percentiles(resampled.iter().map(|all| all[index]).collect(), INTERVAL))
 }
 
-/// `None` with fewer than five units, or if the statistic is undefined for more than half of the resamples.
-pub(crate) fn interval_where_known<T: Copy>(
-    units: &[T],
-    seed: u64,
-    statistic: impl Fn(&[T]) -> Option<f64>,
-) -> Option<[f64; 2]> {
+/// The 95 % interval; `None` with fewer than five units, or if the statistic is undefined for more than half of the
+/// resamples. The same units give the same interval.
+pub(crate) fn interval_where_known<T: Copy>(units: &[T], statistic: impl Fn(&[T]) -> Option<f64>) -> Option<[f64; 2]> {
     if units.len() < FEWEST {
         return None;
     }
-    let resamples = resamples(units, stream(seed, "bootstrap over participants", 0));
+    let resamples = resamples(units, stream(SEED, "bootstrap over participants", 0));
     let resampled: Vec<f64> = resamples.filter_map(|drawn| statistic(&drawn)).collect();
     (2 * resampled.len() >= RESAMPLES).then(|| percentiles(resampled, INTERVAL))
 }

@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::facts::RecordingFacts;
 use crate::frozen_plan::{PlanVersions, RecordedPlan};
-use crate::pass::reading::{RecordedConsent, WaivedPractice};
+use crate::pass::reading::{AnalysisScope, RecordedConsent, WaivedPractice};
 use crate::planned_trial::{ForeignRecording, PlannedTrialKey, RecordingCopy};
 use crate::tables::participants::TutorialQuestionRow;
 use crate::trial_statistics::{TrialDetails, TrialStatistics};
@@ -46,7 +46,7 @@ pub struct PartHeader {
     pub copies: BTreeSet<RecordingCopy>,
     /// Recordings that were left out, since they are none of the study's.
     pub foreign: BTreeSet<ForeignRecording>,
-    pub analysis: PartAnalysisOptions,
+    pub analysis: AnalysisScope,
     /// The study plans to which the recordings belong, each with its digest; empty for recordings without a plan.
     pub plans: BTreeSet<(String, String)>,
 }
@@ -58,14 +58,6 @@ pub struct PartShared {
     /// Layout and recipes of the kitchen; `None` in a part without recordings.
     pub kitchen: Option<[RecordedFile; 2]>,
     pub versions: PlanVersions,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PartAnalysisOptions {
-    pub concepts: bool,
-    pub events: bool,
-    pub raters: Option<[String; 2]>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -128,11 +120,10 @@ impl ShardMismatch {
 
 impl PartHeader {
     fn options(&self) -> String {
-        let PartAnalysisOptions { concepts, events, raters } = &self.analysis;
+        let AnalysisScope { concepts, events, raters } = &self.analysis;
         let skipped = [(*concepts, "concepts"), (*events, "events")];
         let skipped: Vec<&str> = skipped.iter().filter(|(is_done, _)| !is_done).map(|(_, what)| *what).collect();
-        let skip =
-            Some(skipped).filter(|skipped| !skipped.is_empty()).map(|skipped| format!("--skip {}", skipped.join(",")));
+        let skip = (!skipped.is_empty()).then(|| format!("--skip {}", skipped.join(",")));
         let raters = raters.as_ref().map(|raters| format!("--raters {}", raters.join(" ")));
         let all: Vec<String> = [skip, raters].into_iter().flatten().collect();
         if all.is_empty() { "without --skip and --raters".to_string() } else { format!("with {}", all.join(" ")) }

@@ -11,8 +11,6 @@ use tomcom_core::kitchen::Kitchen;
 
 /// Cost of a signal in presses in the paper's comparison of concepts: what the league counts.
 pub const PAPERS_COST: f64 = 1.5;
-/// Seed of the bootstrap's random numbers: the same trials give the same interval.
-const SEED: u64 = 1;
 
 /// What a tournament keeps beside a recording, since it cannot be read from the log.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -125,7 +123,7 @@ impl Contestant {
         // Trials are drawn with their unassisted trials of the same seed.
         let figure = |value: &dyn Fn(&[Pair]) -> Option<f64>| StudyArmStatistic {
             value: value(&pairs),
-            interval: interval_where_known(&pairs, SEED, value),
+            interval: interval_where_known(&pairs, value),
         };
         let signals = |trial: &ContestTrial| trial.summary.signals as f64;
         let useless = |pairs: &[Pair]| {

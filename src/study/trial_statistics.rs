@@ -11,7 +11,7 @@ use crate::effect::LEVEL;
 use crate::rater_episodes::RaterFalseBeliefAgreement;
 use crate::robot_tally::RobotEventSummary;
 use crate::roc::{ConceptPreventionCounts, ConceptTotals};
-use crate::statistics::{ConfidenceInterval, mean, share_interval};
+use crate::statistics::{ConfidenceInterval, mean, wilson};
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::measures::matching::{CommunicationEvent, MatchCounts, WINDOW};
 use tomcom_core::measures::raters::{BeliefSource, RaterPair};
@@ -207,6 +207,7 @@ pub fn arrange(trials: &mut [TrialStatistics]) {
     }
 }
 
+/// An alias, since serde's derive borrows a field whose type is written as a reference.
 pub type SignalSenderName = &'static str;
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -321,7 +322,7 @@ impl TrialTotals {
         let lengths: Vec<u32> = beliefs.iter().flat_map(|one| one.lengths.iter().copied()).collect();
         let any_aspect: Vec<u32> = beliefs.iter().flat_map(|one| one.lengths_any_aspect.iter().copied()).collect();
         let per_100 = |number: u64| (human_actions > 0).then(|| 100.0 * number as f64 / human_actions as f64);
-        let interval = share_interval(related, errors, LEVEL);
+        let interval = wilson(related as f64 / errors as f64, errors as f64, LEVEL);
         TrialTotals {
             beliefs_from: sources(trials).into_keys().max(),
             belief_sources: sources(trials),
@@ -376,7 +377,8 @@ pub struct DetailTotals {
     pub without_advice: Option<MatchCounts>,
     pub with_advice: Option<MatchCounts>,
     pub similarity_by_trial: Vec<WizardAssistantSimilarity>,
-    pub offers: OfferTally,
+    /// Where wizards send the signals; `None` without an offer.
+    pub offers: Option<OfferTally>,
     pub probes: Vec<(String, ProbedTrial)>,
 }
 
@@ -409,7 +411,7 @@ impl DetailTotals {
             });
         }
         if trial.condition == Condition::Wizard {
-            offers.iter().for_each(|offer| self.offers.add(offer));
+            offers.iter().for_each(|offer| self.offers.get_or_insert_default().add(offer));
         }
         self.probes.extend(probes.map(|probes| (trial.participant.clone(), probes)));
     }

@@ -111,6 +111,19 @@ fn what_was_typed_is_exported_only_if_it_is_asked_for() {
     };
     assert!(of(false).iter().all(|row| !row.contains_key("words")));
     assert!(of(true).iter().any(|row| row["words"].contains(&note)), "{note}");
+    // So is the reason of an exclusion; that there is one is always told.
+    let recording = folder("excluded-recording");
+    fs::create_dir(&recording).expect("a folder");
+    fs::copy("tests/golden/format-3-simulated.jsonl", recording.join(LOG_NAME)).expect("a log");
+    tomcom_session::log::rule(&recording, true, "tracker slipped").expect("excluded");
+    for (with_words, why) in [(false, "excluded"), (true, "excluded: tracker slipped")] {
+        let out = folder("excluded");
+        let summary = export(std::slice::from_ref(&recording), &out, with_words, || ()).expect("exported");
+        let sub = summary.recordings[0].place.split('/').next().expect("a participant");
+        let session = &rows(&out.join(sub).join(format!("{sub}_sessions.tsv")))[0];
+        assert_eq!((session["excluded"].as_str(), session["left_out"].as_str()), ("1", why));
+        assert_eq!(rows(&out.join("participants.tsv"))[0]["left_out"], "1");
+    }
 }
 
 #[test]
@@ -128,8 +141,7 @@ fn a_folder_with_something_in_it_is_refused() {
     let request = AnalysisRequest {
         paths: vec![damaged.clone()],
         out: damaged.join("new/study"),
-        extent: AnalysisScope { concepts: false, events: true },
-        raters: None,
+        scope: AnalysisScope { concepts: false, events: true, raters: None },
         frozen: None,
     };
     let found = NamedRecordings::find(&request.paths, &[]).expect("a recording");

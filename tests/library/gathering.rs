@@ -157,9 +157,9 @@ fn what_is_none_of_the_study_is_left_out_and_named() {
         person("P01")(header);
         header["session"].as_object_mut().expect("settings").remove("step");
     });
-    let extent = AnalysisScope { concepts: false, events: false };
+    let scope = AnalysisScope { concepts: false, events: false, raters: None };
     let (paths, results) = (vec![out.clone()], folder("foreign-results"));
-    let request = AnalysisRequest { paths, out: results, extent, raters: None, frozen: None };
+    let request = AnalysisRequest { paths, out: results, scope, frozen: None };
     for plans in [vec![], vec!["paper".to_string()]] {
         let found = NamedRecordings::find(&request.paths, &plans).expect("recordings");
         let (figures, report) = pass::study(&request, &found, || ()).expect("analysed");
@@ -201,7 +201,7 @@ fn two_recordings_that_count_for_one_trial_are_refused_with_both_names() {
     let both = [root.join("b"), root.join("a")];
     let told = refusal(&both);
     assert!(told.contains(&second.display().to_string()), "{told}");
-    assert!(told.contains("a second recording of trial 1 of P01 in the plan \"paper\""), "{told}");
+    assert!(told.contains("a second recording of trial 1 of participant P01 in the plan \"paper\""), "{told}");
     assert!(told.contains(&format!("which {} is a recording of", first.display())), "{told}");
     assert!(NamedRecordings::find(&both, &[]).is_err());
     // What does not count is no second recording: excluded, cut, another trial, practice, another plan, no plan.
@@ -251,7 +251,7 @@ fn two_recordings_that_count_for_one_trial_are_refused_with_both_names() {
     simulated(&second, 4);
     assert_eq!(number(&both), 2);
     simulated(&second, 3);
-    assert!(refusal(&both).contains("a second recording of trial 1 of seed1-P01"));
+    assert!(refusal(&both).contains("a second recording of trial 1 of participant P01 (simulated, seed 1)"));
     // Tables would make one participant of a person and a simulation with the same code, whichever trials they are.
     for period in [1, 2] {
         record(&second, &log, |header| header["session"]["step"]["period"] = json!(period));
@@ -489,8 +489,8 @@ fn every_reader_has_the_corrected_code_until_it_is_taken_back() {
     assert_eq!(rows[2], ("P02-1".to_string(), "P03".to_string()), "{rows:?}");
     // The second list comes from the numbers that the first one kept.
     assert_eq!(listed(&out), rows);
-    let extent = AnalysisScope { concepts: false, events: false };
-    let read = reading::read(&recording, "one", extent, None, &mut KeptCost::default()).expect("readable");
+    let scope = AnalysisScope { concepts: false, events: false, raters: None };
+    let read = reading::read(&recording, "one", &scope, &mut KeptCost::default()).expect("readable");
     assert_eq!(read.expect("a trial").1.trial.participant, "P03");
     let all = GatheredRecordings::find(std::slice::from_ref(&out)).expect("recordings");
     let bids = folder("bids");
@@ -508,8 +508,7 @@ fn every_reader_has_the_corrected_code_until_it_is_taken_back() {
     let found = |code: &str| forget::find(&out, &out.join("nothing"), code).expect("a folder").recordings;
     assert_eq!([found("P02"), found("P03")], [vec![out.join("P02-2")], vec![recording.clone()]]);
 
-    let request =
-        AnalysisRequest { paths: vec![out.clone()], out: folder("results"), extent, raters: None, frozen: None };
+    let request = AnalysisRequest { paths: vec![out.clone()], out: folder("results"), scope, frozen: None };
     let (figures, report) =
         pass::study(&request, &NamedRecordings::find(&request.paths, &[]).expect("recordings"), || ())
             .expect("analysed");

@@ -221,6 +221,7 @@ def main(tomcom, folder):
         rename(recording, code)
     answers = {"age": 31, "hand": "left", "tired": 5, "job": TYPED}
     add_person(planned[0], answers)
+    run(tomcom, "exclude", planned[2], "--reason", TYPED)
 
     # Recordings of no plan have a tree of their own: beside those of a plan they are left out, and named.
     tree, tree_alone = folder / "bids", folder / "bids-alone"
@@ -247,6 +248,8 @@ def main(tomcom, folder):
     people = table(tree / "participants.tsv")
     others = table(tree_alone / "participants.tsv")
     labels = dict(zip(others["code"], others["participant_id"]))
+    why = [one for file in tree.glob("sub-*/*_sessions.tsv") for one in table(file)["left_out"].dropna()]
+    assert why == ["excluded"] and people["left_out"].sum() == 1, (why, people)
     assert len(people) == 2 and len(others) == 3 and len({label.lower() for label in labels.values()}) == 3, labels
     assert labels["Q07"] == "sub-Q07" and sorted(labels[code] for code in ("Q-07", "Q_07")) == ["sub-Q07x2", "sub-Q07x3"], labels
     assert {code for code, _ in told_alone["changed_codes"]} == {"Q-07", "Q_07"}

@@ -139,7 +139,7 @@ def main(tomcom, folder):
     with open(folder / "study/trials.csv", newline="", encoding="utf-8") as trials:
         for row in csv.DictReader(trials):
             if row["counts"] == "true":
-                rates.setdefault(row["condition"], []).append(float(row["error_rate_human"]))
+                rates.setdefault(row["planned_arm"], []).append(float(row["error_rate_human"]))
                 presses += int(row["human_presses"])
     assert sum(map(len, rates.values())) == 7 and f"presses_human: {presses}\n" in tables, (tables, presses)
     for condition, found in rates.items():

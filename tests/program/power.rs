@@ -112,7 +112,10 @@ fn a_plan_is_frozen_once_and_the_study_says_whether_it_is_that_one() {
     for (now, before) in [("presses = 41", "presses = 40"), ("participants = 5", "participants = 4")] {
         fs::write(&plan, session.replacen(before, now, 1)).expect("written");
         let line = session.lines().position(|line| line.starts_with(before)).expect("a setting") + 1;
-        for told in [format!("short.toml:{line}: found {now}"), format!("{before}, as it was frozen")] {
+        for told in [
+            format!("short.toml:{line}: found {now}, changed since the plan was frozen"),
+            format!("{before}, as it was frozen"),
+        ] {
             refused(&["operate", &plan, "--code", "P01", "--frozen", &file], &told);
             refused(&["plan", &plan, "--out", &out, "--frozen", &file], &told);
         }

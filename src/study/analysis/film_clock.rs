@@ -75,11 +75,16 @@ pub fn align(times_s: &[f64], stamps_s: &[f64], gaze: &[ClockPair]) -> Result<Cl
         pairs.iter().map(|(session, film)| (film - offset_s - session * (1.0 + drift)).abs()).collect();
     off_s.sort_by(f64::total_cmp);
     let residual_s = off_s[((number * COVERED) as usize).min(off_s.len() - 1)];
-    let mut steps: Vec<f64> = times_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    steps.sort_by(f64::total_cmp);
-    let frame_s = steps[steps.len() / 2];
+    let frame_s = frame_s(times_s);
     match residual_s <= frame_s {
         true => Ok(ClockAlignment { offset_s, drift, residual_s, frame_s }),
         false => Err(ClockRefusal::Residual { residual_s, frame_s }),
     }
+}
+
+/// Median time between pictures, in seconds; 0 for fewer than two. `times_s`: of the pictures.
+pub(super) fn frame_s(times_s: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = times_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    steps.sort_by(f64::total_cmp);
+    steps.get(steps.len() / 2).copied().unwrap_or(0.0)
 }

@@ -5,6 +5,8 @@
 //! its brightness rose, stayed up for as long as a flash, and fell back. [`align`] finds the pixel whose flashes fit the
 //! log's, and fits offset and drift of the film's clock to them.
 
+use super::film_clock::frame_s;
+
 /// Duration of a flash of the page, in seconds.
 pub const FLASH_S: f64 = 0.2;
 /// Least rise in brightness that counts as a flash, of 255.
@@ -119,9 +121,7 @@ impl FlashSearch {
 
     /// Median time between frames, in seconds.
     pub fn frame_s(&self) -> f64 {
-        let mut steps: Vec<f64> = self.times_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        steps.sort_by(f64::total_cmp);
-        steps.get(steps.len() / 2).copied().unwrap_or(0.0)
+        frame_s(&self.times_s)
     }
 }
 

@@ -3,9 +3,10 @@
 //! these presses; the other baseline presses random buttons.
 
 use serde::Serialize;
+use statrs::function::logistic::{logistic, logit};
 
 use super::fitting::response_surface::{REACH, surface};
-use crate::statistics::interval;
+use crate::statistics::intervals;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::kitchen::{Agent, Kitchen, WeightedWorlds, World};
 use tomcom_core::measures::detection::{BeliefsBeforePress, TrialBeliefs};
@@ -54,7 +55,7 @@ impl PressLogLikelihood {
             trials.iter().map(|trial| trial.iter().map(|press| log_p(kitchen, cost, &model, press)).sum()).collect()
         };
         let with = |at: &[f64]| ChoiceParameters { tau: at[0].exp(), lapse: logistic(at[1]), ..model.clone() };
-        let start = [model.tau.ln(), logit(model.lapse)];
+        let start = [model.tau.ln(), logit(model.lapse.clamp(1e-6, 1.0 - 1e-6))];
         let loss = |at: &[f64]| -total(&with(at), cost).iter().sum::<f64>() / presses;
         let best = with(&least(loss, start));
         let informed = total(&best, cost);
@@ -77,7 +78,7 @@ impl PressLogLikelihood {
             informed: Some(informed.iter().sum::<f64>() / presses),
             uniform: Some(-(kitchen.buttons[Agent::Human.index()].len() as f64).ln()),
             gain: gains.as_ref().map(|gains| ratio(gains)),
-            gain_interval: gains.map(|gains| interval(&gains, seed, ratio)),
+            gain_interval: gains.map(|gains| intervals(&gains, seed, |drawn| [ratio(drawn)])[0]),
             informed_tau: Some(best.tau),
             informed_lapse: Some(best.lapse),
         }
@@ -106,15 +107,6 @@ fn least(mut loss: impl FnMut(&[f64]) -> f64, mut at: [f64; 2]) -> [f64; 2] {
 fn log_p(kitchen: &Kitchen, cost: &mut CostToGo, model: &ChoiceModel, press: &BeliefsBeforePress) -> f64 {
     let truth = WeightedWorlds::certain(World::with_true_recipes(kitchen, press.state));
     model.probabilities(cost, &truth).press[press.button.index()].ln()
-}
-
-fn logit(p: f64) -> f64 {
-    let p = p.clamp(1e-6, 1.0 - 1e-6);
-    (p / (1.0 - p)).ln()
-}
-
-fn logistic(x: f64) -> f64 {
-    1.0 / (1.0 + (-x).exp())
 }
 
 /// Ratio of the sum of the first elements to the sum of the second elements.

@@ -101,8 +101,6 @@ impl OfferSummary {
 
 #[derive(Clone, Debug, Default)]
 pub struct OfferTally {
-    /// Whether an offer was added, also one that is not counted.
-    is_any: bool,
     /// Durations and reaction times in seconds.
     stood: Vec<f64>,
     by_reason: BTreeMap<OfferCloseReason, Vec<f64>>,
@@ -115,7 +113,6 @@ pub struct OfferTally {
 impl OfferTally {
     /// Adds an offer. An offer that was still open where a recording was cut is not counted.
     pub fn add(&mut self, one: &TimedOffer) {
-        self.is_any = true;
         let (Some(stood_s), Some(reason)) = (one.stood_s, one.reason) else { return };
         self.stood.push(stood_s);
         self.by_reason.entry(reason).or_default().push(stood_s);
@@ -125,10 +122,6 @@ impl OfferTally {
             Some(OfferKeyKind::OwnKey) => &mut self.by_own_key,
             None => &mut self.not_taken,
         } += 1;
-    }
-
-    pub fn is_empty(&self) -> bool {
-        !self.is_any
     }
 
     pub fn summary(self) -> OfferSummary {

@@ -8,6 +8,7 @@
 use serde::Serialize;
 
 use crate::analysis::probe_record::{AspectAtFreeze, ProbeQuestionKind, ProbedQuestion, weighted_share};
+use crate::statistics::mean;
 use tomcom_core::measures::detection::{CALIBRATED, CALIBRATION_BINS, Calibration, FalseBeliefDetection, weighted_auc};
 use tomcom_core::mind::dirichlet::LEAST_MEAN;
 
@@ -78,12 +79,11 @@ impl ProbeDetection {
             weighted_auc(&scored)
         };
         let of_groups = [area(false, &p_false), area(true, &p_false)];
-        let known: Vec<f64> = of_groups.into_iter().flatten().collect();
         let predictions = beliefs.iter().filter_map(|one| Some((p_false(one)?, one.is_wrong, one.weight)));
         let calibration = Calibration::from_weighted(predictions, CALIBRATED, CALIBRATION_BINS);
         ProbeDetection {
             wrong: weighted_share(beliefs.iter().map(|one| (one.weight, one.is_wrong))),
-            auc: (!known.is_empty()).then(|| known.iter().sum::<f64>() / known.len() as f64),
+            auc: mean(of_groups.into_iter().flatten()),
             auc_locations: of_groups[0],
             auc_recipes: of_groups[1],
             auc_baseline: area(false, &changed),

@@ -1,21 +1,20 @@
 //! Results of freeze probes: what participants knew (by state aspect, by what happened at the aspect's location, by
 //! condition), the effect of assistance, and how well the estimate predicted beliefs.
 
+use std::collections::BTreeSet;
+
 use serde::Serialize;
 
 use crate::analysis::probe_detection::{ProbeDetection, ProbeLogScores, WeightedProbeBelief};
 use crate::analysis::probe_record::{ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial, weighted_share};
 use crate::grouping::grouped;
 use crate::headline::directed;
-use crate::statistics::interval_where_known;
+use crate::statistics::{interval_where_known, mean};
 use crate::why::{self, decimal, percent};
 use tomcom_core::base::text::count;
 use tomcom_core::measures::raters::BeliefSource;
 use tomcom_session::probes::ProbeOrigin;
 use tomcom_session::study_arm::StudyArm;
-
-/// Seed of the bootstrap's random numbers: the same answers give the same intervals.
-const SEED: u64 = 1;
 
 /// Main results are over scheduled questions about the present state that were answered in time.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -104,8 +103,8 @@ impl ProbeSummary {
             participants: known.len() as u64,
             counts,
             detection: ProbeDetection::from_beliefs(&all),
-            auc_interval: interval_where_known(&known, SEED, |of| pooled(of).auc),
-            ece_interval: interval_where_known(&known, SEED, |of| pooled(of).ece),
+            auc_interval: interval_where_known(&known, |of| pooled(of).auc),
+            ece_interval: interval_where_known(&known, |of| pooled(of).ece),
             auc_unweighted: ProbeDetection::from_beliefs(&unweighted).auc,
             log_scores: ProbeLogScores::from_questions(&numbered),
             accuracy: accuracy(&participants, (ProbeAccuracyGrouping::Kind, "all"), is_counted),
@@ -242,13 +241,11 @@ fn groups(trial: &ProbedTrial, question: &ProbedQuestion) -> Vec<(ProbeAccuracyG
 
 /// Over the questions of the main results; `participants`: the trials of each.
 fn accuracies(participants: &[Vec<&ProbedTrial>]) -> Vec<ProbeAnswerAccuracy> {
-    let mut all: Vec<(ProbeAccuracyGrouping, usize, String)> = participants
+    let all: BTreeSet<(ProbeAccuracyGrouping, usize, String)> = participants
         .iter()
         .flatten()
         .flat_map(|trial| trial.counted().flat_map(|question| groups(trial, question)))
         .collect();
-    all.sort();
-    all.dedup();
     all.into_iter()
         .map(|key| {
             let is_in = |trial: &ProbedTrial, question: &ProbedQuestion| {
@@ -290,7 +287,7 @@ fn accuracy(
         n: questions().filter(|one| one.is_wrong().is_some()).count() as u64,
         unsure: questions().filter(|one| one.response == ProbeResponse::Unsure).count() as u64,
         accuracy: weighted_share(answers.into_iter().flatten()),
-        interval: interval_where_known(&sums, SEED, share),
+        interval: interval_where_known(&sums, share),
     }
 }
 
@@ -303,11 +300,11 @@ fn awareness_effect(participants: &[Vec<&ProbedTrial>]) -> Option<SituationAware
     };
     let differences: Vec<f64> =
         participants.iter().filter_map(|of| Some(share(of, true)? - share(of, false)?)).collect();
-    let mean = |of: &[f64]| (!of.is_empty()).then(|| of.iter().sum::<f64>() / of.len() as f64);
+    let mean = |of: &[f64]| mean(of.iter().copied());
     Some(SituationAwarenessEffect {
         participants: differences.len() as u64,
         difference: mean(&differences)?,
-        interval: interval_where_known(&differences, SEED, mean),
+        interval: interval_where_known(&differences, mean),
     })
 }
 

@@ -165,7 +165,8 @@ pub struct ProbedTrialStatistics {
 
 impl ProbedTrial {
     pub fn statistics(&self) -> ProbedTrialStatistics {
-        ProbedTrialStatistics { counted: self.counted().count() as u64, share_wrong: self.share_wrong() }
+        let answers = self.counted().filter_map(|one| Some((one.weight(), one.is_wrong()?)));
+        ProbedTrialStatistics { counted: self.counted().count() as u64, share_wrong: weighted_share(answers) }
     }
 
     pub fn is_any(&self) -> bool {
@@ -174,10 +175,6 @@ impl ProbedTrial {
 
     pub fn counted(&self) -> impl Iterator<Item = &ProbedQuestion> {
         self.questions.iter().filter(|question| question.is_counted())
-    }
-
-    pub(crate) fn share_wrong(&self) -> Option<f64> {
-        weighted_share(self.counted().filter_map(|one| Some((one.weight(), one.is_wrong()?))))
     }
 }
 

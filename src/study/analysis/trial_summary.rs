@@ -10,6 +10,7 @@ use tomcom_core::base::text::{PathText, count, decimal};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::{CostToGo, ProofBudget};
 use tomcom_core::kitchen::{Agent, DishId, Kitchen, KitchenChange, LocationId};
+use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::ErrorCause;
 use tomcom_core::measures::sequences::{ErrorSequence, sequences, sequences_any_aspect};
 use tomcom_session::follower::SessionFollower;
@@ -83,16 +84,24 @@ impl TrialFalseBeliefErrors {
         if !is_told || judged.iter().any(|press| !press.belief_known) {
             return None;
         }
-        let count =
-            |is: fn(ErrorCause) -> bool| judged.iter().filter_map(|press| press.cause).filter(|&c| is(c)).count();
+        let [related, related_to_pairs] = belief_related(judged);
         Some(TrialFalseBeliefErrors {
-            related: count(|cause| matches!(cause, ErrorCause::Belief { .. })) as u64,
-            related_to_pairs: count(|cause| matches!(cause, ErrorCause::Belief { with: Some(_), .. })) as u64,
+            related,
+            related_to_pairs,
             sequences: sequences(judged),
             any_aspect: sequences_any_aspect(judged),
             episodes: follower.episodes.harmful().count() as u64,
         })
     }
+}
+
+/// Number of errors that follow from false beliefs, and number of those that only two false beliefs together explain.
+pub(crate) fn belief_related(judged: &[JudgedPress]) -> [u64; 2] {
+    let causes = judged.iter().filter_map(|press| press.cause);
+    causes.fold([0, 0], |[related, to_pairs], cause| match cause {
+        ErrorCause::Belief { with, .. } => [related + 1, to_pairs + u64::from(with.is_some())],
+        ErrorCause::Slip | ErrorCause::Planning => [related, to_pairs],
+    })
 }
 
 /// Values are null where the participants' beliefs are not known.
@@ -309,6 +318,11 @@ fn median_of(counts: &BTreeMap<u32, u64>) -> Option<f64> {
     Some((nth(all.checked_sub(1)? / 2)? + nth(all / 2)?) / 2.0)
 }
 
+/// On the trial's clock, without pauses.
+pub(crate) fn seconds_between(session: &Session, from: SessionTime, to: SessionTime) -> f64 {
+    session.trial_clock_at(to).secs_since(session.trial_clock_at(from))
+}
+
 /// Seconds from the appearance of each served order to its serving, on the trial's clock.
 pub fn order_times(session: &Session) -> Vec<f64> {
     let mut shown: BTreeMap<LocationId, SessionTime> = BTreeMap::new();
@@ -319,10 +333,7 @@ pub fn order_times(session: &Session) -> Vec<f64> {
                 shown.insert(order, entry.time);
             }
             TimelineEvent::Served { order } => {
-                let since = shown.remove(&order);
-                times.extend(
-                    since.map(|since| session.trial_clock_at(entry.time).secs_since(session.trial_clock_at(since))),
-                );
+                times.extend(shown.remove(&order).map(|since| seconds_between(session, since, entry.time)));
             }
             _ => {}
         }

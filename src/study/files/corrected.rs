@@ -56,8 +56,8 @@ pub fn remarks(recording: &Path, correction: &CodeCorrection) -> FileResult<Vec<
     };
     if let Some(period) = step.period.filter(|_| has(after)) {
         told.push(format!(
-            "{after} has a recording of trial {period} of the plan \"{plan}\" already, beside this one: tomcom study takes only one; tomcom \
-             exclude leaves out the other one, and tomcom correct {} --undo takes the correction back",
+            "{after} has a recording of trial {period} of the plan \"{plan}\" already, beside this one, so tomcom study refuses both: leave the \
+             other one out (tomcom exclude), correct its code, too, or take this correction back (tomcom correct {} --undo)",
             recording.display()
         ));
     }

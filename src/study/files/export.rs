@@ -15,6 +15,7 @@ use crate::files::new_folder::NewFolder;
 use crate::report;
 use crate::study_part::AnalysedRecording;
 use tomcom_core::base::text::without_formula;
+use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::files::overwrite;
 use tomcom_session::files::replace_file::{self, Replacement};
 
@@ -212,6 +213,23 @@ impl AnalysisFolder {
         at(&path, replace_file::replace(&path, page.as_bytes()))?;
         Ok(path)
     }
+}
+
+/// Errors: there is a file at the path that is no table with this header line; `what`: in words, what is to be there.
+pub(super) fn check_csv(path: &Path, what: &str, header: &str) -> FileResult<()> {
+    overwrite::check(path, what, |head| overwrite::first_line(head) == header.as_bytes())
+        .map_err(|reason| FileError::unwritable(path, reason))
+}
+
+/// Writes a table of its own, whose first row is the header. Errors: the file cannot be written.
+pub(super) fn write_csv(path: &Path, rows: impl IntoIterator<Item: IntoIterator<Item: AsRef<[u8]>>>) -> FileResult<()> {
+    let write = || -> io::Result<()> {
+        let mut table = csv::Writer::from_writer(Vec::new());
+        rows.into_iter().try_for_each(|row| table.write_record(row))?;
+        let bytes = table.into_inner().map_err(|error| io::Error::other(error.to_string()))?;
+        overwrite::write(path, &bytes)
+    };
+    write().map_err(|reason| FileError::unwritable(path, reason))
 }
 
 fn check_replaced(folder: &Path) -> Result<(), AnalysisWriteError> {

@@ -10,6 +10,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
 
+use crate::files::export::{check_csv, write_csv};
 use crate::frozen_plan::{FROZEN_FORMAT, FrozenPlan};
 use crate::pool::{POOL_FORMAT, PoolHeader, SimulationPool};
 use crate::power::{PowerSummary, SampleSizePower, TestPower};
@@ -106,24 +107,13 @@ const COLUMNS: [PowerColumn; 12] = [
 
 /// Errors: there is a file at the path that this program did not write.
 pub fn check_table(path: &Path) -> FileResult<()> {
-    let names = COLUMNS.map(|(name, _)| name).join(",");
-    overwrite::check(path, "a table of power", |head| overwrite::first_line(head) == names.as_bytes())
-        .map_err(|reason| FileError::unwritable(path, reason))
+    check_csv(path, "a table of power", &COLUMNS.map(|(name, _)| name).join(","))
 }
 
 pub fn write_table(path: &Path, found: &PowerSummary) -> FileResult<()> {
-    let write = || -> io::Result<()> {
-        let mut table = csv::Writer::from_writer(Vec::new());
-        table.write_record(COLUMNS.map(|(name, _)| name))?;
-        for size in &found.sizes {
-            for one in &size.tests {
-                table.write_record(COLUMNS.map(|(_, value)| value(size, one)))?;
-            }
-        }
-        let bytes = table.into_inner().map_err(|error| io::Error::other(error.to_string()))?;
-        overwrite::write(path, &bytes)
-    };
-    write().map_err(|reason| FileError::unwritable(path, reason))
+    let tests = found.sizes.iter().flat_map(|size| size.tests.iter().map(move |one| (size, one)));
+    let rows = tests.map(|(size, one)| COLUMNS.map(|(_, value)| value(size, one)));
+    write_csv(path, std::iter::once(COLUMNS.map(|(name, _)| name.to_string())).chain(rows))
 }
 
 /// Text in the first line of a frozen plan's file, before the digest: SHA-256 of every byte after that line, so that it

@@ -53,7 +53,7 @@ impl PartWriter {
         let unwritable = |reason| FileError::unwritable(&self.path, reason);
         let mut line = serde_json::to_vec(value).map_err(|error| unwritable(io::Error::from(error)))?;
         line.push(b'\n');
-        self.file.write_all(&line).map_err(|reason| FileError::unwritable(&self.path, reason))
+        self.file.write_all(&line).map_err(unwritable)
     }
 
     pub fn finish(self) -> FileResult<()> {
@@ -83,10 +83,8 @@ impl PartReader {
         let header: PartHeader = parsed(&path, number, &text)?;
         if header.study_part != PART_FORMAT {
             let found = format!("a study's part of format {}", header.study_part);
-            let remedy = format!(
-                "a study's part of format {PART_FORMAT}, or the version of the program that wrote \
-                                  the part"
-            );
+            let remedy =
+                format!("a study's part of format {PART_FORMAT}, or the version of the program that wrote the part");
             return Err(at_line(&path, number, &text, 0, found, remedy));
         }
         let cut = || FileError::from_finding(&path, "the end after the first line".to_string(), REMEDY.to_string());

@@ -4,9 +4,9 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
+use crate::files::export::{check_csv, write_csv};
 use crate::tournament::{KeptFigures, Tournament, csv_header, csv_rows};
 use tomcom_session::files::file_error::{FileError, FileResult};
-use tomcom_session::files::overwrite;
 
 /// Beside a recording: what cannot be read from its log.
 const KEPT: &str = "tournament.json";
@@ -24,18 +24,9 @@ pub fn keep(recording: &Path, figures: &KeptFigures) -> FileResult<()> {
 
 /// Errors: there is a file at the path that this program did not write.
 pub fn check_table(path: &Path) -> FileResult<()> {
-    let names = csv_header().join(",");
-    overwrite::check(path, "a table of a tournament", |head| overwrite::first_line(head) == names.as_bytes())
-        .map_err(|reason| FileError::unwritable(path, reason))
+    check_csv(path, "a table of a tournament", &csv_header().join(","))
 }
 
 pub fn write_table(path: &Path, found: &Tournament) -> FileResult<()> {
-    let write = || -> io::Result<()> {
-        let mut table = csv::Writer::from_writer(Vec::new());
-        table.write_record(csv_header())?;
-        csv_rows(found).iter().try_for_each(|row| table.write_record(row))?;
-        let bytes = table.into_inner().map_err(|error| io::Error::other(error.to_string()))?;
-        overwrite::write(path, &bytes)
-    };
-    write().map_err(|reason| FileError::unwritable(path, reason))
+    write_csv(path, std::iter::once(csv_header()).chain(csv_rows(found)))
 }

@@ -36,7 +36,7 @@ pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials
         (headline.map_or_else(nothing, in_words))
         (experience(figures))
         @if figures.effects.iter().any(AssistanceEffect::has_pairs) {
-            h3 { "Tests" } "\n"
+            h3 { "Secondary tests" } "\n"
             (tests(captions, &figures.effects))
             @if let Some(effect) = headline { (anova(captions, effect)) }
         } @else {
@@ -212,7 +212,7 @@ fn anova(captions: &mut Captions, effect: &AssistanceEffect) -> Markup {
     ];
     let heads = ["", "F", "degrees of freedom", "p", "partial \u{3b7}\u{b2}"];
     html! {
-        h3 { "Mixed ANOVA of " (effect.measure.title) } "\n"
+        h3 { "Secondary: mixed ANOVA of " (effect.measure.title) } "\n"
         (captions.table(html! {
             "Mixed ANOVA of " (effect.groups.iter().sum::<usize>()) " participants, in the coding of a crossover and in the paper\u{2019}s; \
              sums of squares of type III."

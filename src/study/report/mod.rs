@@ -114,12 +114,15 @@ fn summary(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStati
         Some(_) if pairs < FEWEST_PARTICIPANTS => card(
             DASH,
             &format!(
-                "no r and no p here: {pairs} participants with both trials are fewer than {FEWEST_PARTICIPANTS}, and r would be chance"
+                "secondary, the paper\u{2019}s analysis: no r and no p here, since {pairs} participants with both trials are fewer than {FEWEST_PARTICIPANTS}, and r would be chance"
             ),
         ),
         Some(pearson) => card(
             &format!("r\u{a0}=\u{a0}{}", fixed(pearson.r, 2)),
-            &format!("of assistance and fewer errors ({})", p_sentence(pearson.p)),
+            &format!(
+                "secondary, the paper\u{2019}s analysis: of assistance and fewer errors ({}); the first sentence is the main result",
+                p_sentence(pearson.p)
+            ),
         ),
         None => nothing(),
     };

@@ -271,10 +271,9 @@ fn codes_are_kept_beside_the_log_and_come_and_go_as_a_table() {
         fs::write(recording.join("codes-R3.csv"), format!("rater,press,cause,aspect\n{row}\n")).expect("written");
         let told = CodedRecording::open(&recording).expect_err(&row).to_string();
         assert!(told.contains("codes-R3.csv:2:") && told.contains(found), "{told}");
-        let extent = AnalysisScope { concepts: false, events: false };
-        let told = reading::read(&recording, "one", extent, None, &mut KeptCost::default())
-            .err()
-            .map(|error| error.to_string());
+        let scope = AnalysisScope { concepts: false, events: false, raters: None };
+        let told =
+            reading::read(&recording, "one", &scope, &mut KeptCost::default()).err().map(|error| error.to_string());
         assert!(told.as_ref().is_some_and(|told| told.contains("codes-R3.csv:2:")), "{told:?}");
     }
 }

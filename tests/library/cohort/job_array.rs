@@ -1,24 +1,22 @@
 //! Parts of a job array, and folders that were begun before.
 
+use tomcom_study::analysis::trial_summary::SimulationSummary;
+
 use super::{folder, paper, run};
 use crate::support::*;
 
 /// Every file below a folder, with what is in it, by its path there.
-fn all_files(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+fn below(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()) {
+        let name = PathBuf::from(entry.file_name().expect("a name"));
         match entry.is_dir() {
-            true => found.extend(all_files(&entry)),
-            false => found.push((entry.clone(), fs::read(&entry).expect("a file"))),
+            true => found.extend(below(&entry).into_iter().map(|(path, bytes)| (name.join(path), bytes))),
+            false => found.push((name, fs::read(&entry).expect("a file"))),
         }
     }
     found.sort();
     found
-}
-
-fn below(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
-    let relative = |path: PathBuf| path.strip_prefix(folder).expect("below it").to_path_buf();
-    all_files(folder).into_iter().map(|(path, bytes)| (relative(path), bytes)).collect()
 }
 
 #[test]
@@ -55,8 +53,6 @@ fn a_folder_that_was_begun_is_gone_on_with() {
     let again = run(&files, 4, SimulationShard::WHOLE, &out);
     assert_eq!(again.found, 2, "what is whole is read");
     assert!(below(&out) == before, "and the rest is made as it would have been");
-    let bare = |figures: &tomcom_study::analysis::trial_summary::SimulationSummary| {
-        tomcom_study::analysis::trial_summary::SimulationSummary { wall_s: 0.0, found: 0, ..figures.clone() }
-    };
+    let bare = |figures: &SimulationSummary| SimulationSummary { wall_s: 0.0, found: 0, ..figures.clone() };
     assert_eq!(bare(&first), bare(&again), "what is read counts as what is made");
 }

@@ -6,12 +6,12 @@ mod job_array;
 mod pool;
 mod wizard;
 
+use tomcom_study::analysis::trial_summary::SimulationSummary;
+
 use crate::support::*;
 
 fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cohort").join(name);
-    let _ = fs::remove_dir_all(&folder);
-    folder
+    empty_folder(format!("cohort/{name}"))
 }
 
 /// The paper's plan with short trials.
@@ -21,17 +21,12 @@ fn paper(presses: u32) -> SessionSetup {
     files
 }
 
-fn run(
-    files: &SessionSetup,
-    trials: u64,
-    shard: SimulationShard,
-    out: &Path,
-) -> tomcom_study::analysis::trial_summary::SimulationSummary {
+fn run(files: &SessionSetup, trials: u64, shard: SimulationShard, out: &Path) -> SimulationSummary {
     let simulation = SimulationRequest { files: files.clone(), trials, shard, out: out.to_path_buf() };
     simulate(&simulation, || ()).expect("the folder can be written")
 }
 
-fn events(recording: &Path) -> (tomcom_session::LogHeader, Vec<TimestampedEvent>) {
+fn events(recording: &Path) -> (LogHeader, Vec<TimestampedEvent>) {
     let mut log = LogReader::open(recording).expect("a recording");
     let mut all = Vec::new();
     while let Some(line) = log.next_line().expect("an event") {

@@ -69,9 +69,9 @@ fn what_cannot_be_simulated_is_told_beforehand() {
 }
 
 fn analysed(recording: &Path) -> TrialStatistics {
-    let scope = AnalysisScope { concepts: true, events: false };
+    let scope = AnalysisScope { concepts: true, events: false, raters: None };
     let (_, analysis) =
-        reading::read(recording, "one", scope, None, &mut KeptCost::default()).expect("readable").expect("no practice");
+        reading::read(recording, "one", &scope, &mut KeptCost::default()).expect("readable").expect("no practice");
     analysis.trial
 }
 

@@ -16,13 +16,25 @@ fn the_first_sentence_is_the_primary_outcome_and_says_no_more_than_its_interval(
     // The assisted trial of each is the better one by far; or the trials differ by chance.
     let clear = trials(&[[40, 20], [42, 18], [38, 22]], &[[20, 40], [22, 44], [18, 36]]);
     let open = trials(&[[20, 24], [22, 18], [18, 21]], &[[20, 21], [22, 18], [18, 22]]);
-    for (trials, verdict) in
-        [(&clear, "fewer in wizard trials than in unassisted trials"), (&open, "no difference shown")]
-    {
+    for (trials, verdict) in [(&clear, ""), (&open, "no difference shown: ")] {
         let figures = summary(trials);
         let [sentence] = &primary_outcome(&figures)[..] else { panic!("one contrast") };
-        assert!(sentence.starts_with("Primary outcome, errors per 100 presses of the human: wizard "), "{sentence}");
-        assert!(sentence.contains("95 % interval") && sentence.ends_with(&format!(": {verdict}.")), "{sentence}");
+        let begins = format!("Primary outcome, errors per 100 presses of the human: {verdict}");
+        assert!(sentence.starts_with(&begins), "{sentence}");
+        assert_eq!(sentence.contains("no difference shown"), !verdict.is_empty(), "{sentence}");
+        // The effect in percent with its interval, and the rates.
+        let one = &figures.arms.as_ref().expect("a comparison").contrasts[0];
+        let percent =
+            |ratio: f64| format!("{:.0} % {}", 100.0 * (ratio - 1.0).abs(), if ratio < 1.0 { "fewer" } else { "more" });
+        let [low, high] = one.interval.map(percent);
+        let told = format!(
+            "{} in wizard trials than in unassisted trials (95 % interval {low} to {high}); of all presses, from ",
+            percent(one.ratio)
+        );
+        assert!(
+            sentence.contains(&told) && sentence.contains(&format!("; ratio {:.2}, interval ", one.ratio)),
+            "{sentence}"
+        );
         // The same words in the terminal and in the report.
         assert!(describe(&figures).contains(sentence) && page(&figures, trials).contains(sentence.as_str()));
     }
@@ -44,7 +56,11 @@ fn rates_and_ratio_that_point_two_ways_are_explained_beside_them() {
     let trials = trials(&[[40, 30], [10, 12], [11, 13]], &[[30, 40], [12, 10], [13, 11]]);
     let figures = summary(&trials);
     let [sentence] = &primary_outcome(&figures)[..] else { panic!("one contrast") };
-    assert!(sentence.contains("wizard 9.2, unassisted 10.2; ratio 1.02"), "{sentence}");
+    assert!(
+        sentence.contains("2 % more in wizard trials")
+            && sentence.contains("from 10.2 in unassisted to 9.2 in wizard trials; ratio 1.02"),
+        "{sentence}"
+    );
     assert!(
         sentence.contains(". Of wizard to unassisted rates and ratio point two ways: the rates pool"),
         "{sentence}"

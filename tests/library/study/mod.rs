@@ -132,8 +132,8 @@ fn record_person(folder: &Path) {
 
 /// What this recording of a trial gives.
 fn read(folder: &Path, name: &str) -> RecordingAnalysis {
-    let scope = AnalysisScope { concepts: false, events: true };
-    let read = reading::read(folder, name, scope, None, &mut KeptCost::default()).expect("a recording");
+    let scope = AnalysisScope { concepts: false, events: true, raters: None };
+    let read = reading::read(folder, name, &scope, &mut KeptCost::default()).expect("a recording");
     read.expect("a trial").1
 }
 

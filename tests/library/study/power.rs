@@ -92,6 +92,11 @@ fn a_huge_effect_is_found_and_few_participants_are_needed() {
     let [few, more] = [0, 1].map(|index| found.sizes[index].tests[1].least_ratio.expect("an effect is found"));
     assert!(few < more && more < 0.8, "more participants find less: {few} and {more}");
     let text = describe(&found);
+    let at = |words: &str| text.find(words).unwrap_or_else(|| panic!("{words}: {text}"));
+    assert!(
+        at("wizard to unassisted, linear mixed model")
+            < at("wizard to unassisted, mixed ANOVA (the paper's test, secondary)")
+    );
     assert!(text.contains("Of the numbers tried, 8 is the least with a power of 0.8."), "{text}");
     let least = text.split_once("four of five studies find an effect that takes away").map(|(_, least)| least);
     assert!(least.is_some_and(|least| least.contains("or more (interpolated between the effects tried).")), "{text}");
@@ -114,10 +119,12 @@ fn without_an_effect_one_study_in_twenty_finds_one() {
     // Every contrast says that it is corrected, and has a line of its own, with its name.
     let (text, picture) = (describe(&three), charts::power(&three));
     let mut lines = BTreeSet::new();
-    for (arm, against) in [("wizard", "none"), ("tom-com", "none"), ("tom-com", "wizard")] {
+    for (arm, against) in [("wizard", "unassisted"), ("ToM-Com", "unassisted"), ("ToM-Com", "wizard")] {
         let name = format!("{arm} to {against}");
         assert!(
-            text.contains(&format!("{name}, linear mixed model, corrected for the number of contrasts (Holm)")),
+            text.contains(&format!(
+                "{name}, linear mixed model (the plan's main comparison), corrected for the number of contrasts (Holm)"
+            )),
             "{text}"
         );
         assert!(picture.contains(&format!(">{name}</text>")), "{picture}");

@@ -70,9 +70,17 @@ fn few_participants_have_no_r_among_the_main_results() {
         page.split("class=\"card\"").nth(4).expect("four cards").split("</div>").next().expect("a card").to_string()
     };
     let few = card(6);
-    assert!(few.contains("6 participants with both trials are fewer than 8") && !few.contains("r\u{a0}="), "{few}");
+    assert!(
+        few.contains("secondary")
+            && few.contains("6 participants with both trials are fewer than 8")
+            && !few.contains("r\u{a0}="),
+        "{few}"
+    );
     let enough = card(8);
-    assert!(enough.contains("r\u{a0}=") && !enough.contains("fewer than"), "{enough}");
+    assert!(
+        enough.contains("r\u{a0}=") && enough.contains("secondary, the paper") && !enough.contains("fewer than"),
+        "{enough}"
+    );
 }
 
 /// Of an arm in the physics: slowed from 2 to 5 s, touched twice, stopped by the second contact, resumed, stopped by hand.
@@ -103,7 +111,7 @@ fn what_the_robot_did_is_counted_while_the_trial_is_on() {
         let mut tally = RobotEventTally::new(arm);
         events.iter().for_each(|(clock, event, was_on)| tally.note(event, at(*clock), *was_on));
         assert_eq!(tally.ended, Some(TrialEndReason::Wizard));
-        tally.into_figures()
+        tally.figures
     };
     let found = figures_of(ArmKind::Physics);
     let arm = found.arm.clone().expect("an arm that feels");

@@ -142,6 +142,9 @@ fn a_folder_is_listed_and_is_no_recording_where_one_is_meant() {
     assert_eq!(column("state"), ["unreadable", "whole", "cut", "excluded"]);
     let found = figures(&["list", out, "s003", "excluded", "--format", "json"], 0);
     assert_eq!(found["recordings"], Value::from(vec![rows[3].clone()]), "a row with both words");
+    let told = check(&["list", out, "s003", "unheard"], 0);
+    let told = String::from_utf8_lossy(&told.stderr);
+    assert!(told.contains("has \"unheard\" in its line") && !told.contains("s003"), "{told}");
     assert_eq!((&rows[3]["reason"], &rows[1]["kind"]), (&"excluded: interrupted".into(), &"simulated_trial".into()));
     let whole = figures(&["replay", &format!("{out}/seed7-S001"), "--format", "json"], 0);
     assert_eq!((&rows[1]["errors"], &rows[1]["trial_s"]), (&whole["errors"], &whole["trial_s"]));
@@ -187,6 +190,9 @@ fn a_folder_is_listed_and_is_no_recording_where_one_is_meant() {
     assert!(complaint(&["exclude", out, "--code", "S09", "--reason", "x"]).contains("found no recording of S09"));
     let usage = complaint(&["exclude", &format!("{out}/seed7-S002")]);
     assert!(usage.contains("<--reason <REASON>|--back>"), "{usage}");
+    assert!(usage.contains("tip: for example: tomcom exclude sessions/2026-03-14-P07-1 --reason"), "{usage}");
+    let usage = complaint(&["correct", &format!("{out}/seed7-S002"), "--code", "P03"]);
+    assert!(usage.contains("--code P03 --reason \"the code of the day before\""), "{usage}");
     assert!(complaint(&["list", &format!("{out}/seed7-S001/nothing")]).contains("found no folder of this name"));
 }
 

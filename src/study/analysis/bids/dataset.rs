@@ -39,6 +39,8 @@ fn participant_columns() -> Vec<TableColumn<BidsParticipant>> {
         "kind", KINDS, "Who took part" => &row.kind;
         "group", "", "Starting group of the plan: the order of conditions" => row.group.as_deref();
         "recordings", "", "Number of recordings" => row.recordings as u64;
+        "left_out", "", "Number of these that are left out of the analysis; the table of sessions says why"
+            => row.left_out as u64;
         "consent_on", CONSENTS, "Where consent was given" => row.consent[0].as_deref();
         "consent_at", "", "Wall clock time (UTC) at which the recording that begins with the consent began"
             => row.consent[1].as_deref();
@@ -53,6 +55,7 @@ pub struct BidsParticipant {
     pub kind: String,
     pub group: Option<String>,
     pub recordings: usize,
+    pub left_out: usize,
     /// The participant's consent, as far as a recording says it: where it was given, when, and the digest of its text.
     pub consent: [Option<String>; 3],
 }
@@ -89,7 +92,7 @@ fn readme(name: &str, participants: usize, with_words: bool) -> String {
          Recordings of people or simulated people who cook together with a robot, made with tomcom, and exported by `tomcom export --bids`. \
          Participants: {participants}.\n\n\
          A recording is a session (`ses-`). `sub-*_sessions.tsv` says under which condition it was made, whether it is practice, and \
-         whether it is left out of the analysis.\n\n\
+         whether and why it is left out of the analysis.\n\n\
          - `*_events.tsv`: one row for each event of the recording's log but samples. Times are session time: seconds since the \
          beginning of the recording.\n\
          - `*_recording-eye1_physio.tsv.gz`: gaze, one row for each sample; `*_physioevents.tsv.gz`: fixations and blinks, as the eye \
@@ -124,6 +127,7 @@ pub(crate) struct BidsSession<'a> {
     pub ended: Option<TrialEndReason>,
     pub is_complete: bool,
     pub counts: bool,
+    pub left_out: Option<&'a str>,
 }
 
 impl BidsSession<'_> {
@@ -158,8 +162,9 @@ fn session_columns<'a>() -> Vec<TableColumn<BidsSession<'a>>> {
             => Some(row.session.trial_clock(row.session.time)).filter(|clock| *clock > SessionTime::ZERO).map(seconds);
         "ended", ENDS, "Why the trial ended; n/a: it did not" => row.ended.map(TrialEndReason::name);
         "complete", YES_NO, "Whether the recording has its end" => row.is_complete;
-        "excluded", YES_NO, "Whether the trial was aborted or is left out of the analysis; the reason is in the \
-            recording" => !row.counts;
+        "excluded", YES_NO, "Whether the trial was aborted or excluded" => !row.counts;
+        "left_out", "", format!("Why the trial is left out of the analysis; --words adds the reason that was typed; n/a: it is \
+            not; {GUARDED}") => row.left_out;
         "seed", "", "Seed of all random numbers" => row.session.seed();
         "trial", "", "Index of the trial: with the same seed, another index gives other orders" => row.header.trial;
         "log_version", "", "Version of the log's format" => row.header.version;

@@ -12,11 +12,14 @@ pub mod ascent;
 pub mod response_surface;
 pub mod score_surface;
 
+use std::sync::Arc;
+
 use serde::Serialize;
 
 use crate::analysis::fitting::ascent::{BoundReached, LikelihoodMaximum, VariableEstimate, ascend};
 use tomcom_core::base::text::{count, short};
-use tomcom_core::mind::fitting::{HumanModelParameter, TrialLikelihood};
+use tomcom_core::kitchen::Kitchen;
+use tomcom_core::mind::fitting::{FitObservations, HumanModelParameter, TrialLikelihood};
 use tomcom_core::mind::model::HumanModel;
 use tomcom_session::ranges;
 
@@ -60,12 +63,16 @@ pub fn choose(named: &[HumanModelParameter], model: &HumanModel) -> Result<Vec<H
     }
 }
 
-#[derive(Clone, Copy, Debug)]
-pub struct FittedRecordings<'a> {
-    pub number: u64,
-    pub model: &'a HumanModel,
-    pub others: &'a [OtherModel],
-    pub left_out: &'a [String],
+/// The trials of the recordings of a fit.
+#[derive(Clone, Debug)]
+pub struct FitTrials {
+    pub kitchen: Arc<Kitchen>,
+    /// That of the first recording.
+    pub model: HumanModel,
+    pub others: Vec<OtherModel>,
+    /// Recordings that analyses do not count, each with the reason.
+    pub left_out: Vec<String>,
+    pub observations: Vec<FitObservations>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -166,12 +173,12 @@ impl FittedParameter {
 
 /// `likelihood`: of all trials under a model; `tried` is called after each evaluation.
 pub fn fit(
-    trials: FittedRecordings<'_>,
+    trials: &FitTrials,
     plan: &FitSettings,
     likelihood: impl Fn(&HumanModel) -> TrialLikelihood,
     tried: impl Fn(),
 ) -> FitSummary {
-    let begin = plan.start.as_ref().unwrap_or(trials.model);
+    let begin = plan.start.as_ref().unwrap_or(&trials.model);
     // `at`: on the unbounded scale of the fit; other parameters as they begin.
     let with = |at: &[f64]| {
         let mut model = begin.clone();
@@ -200,7 +207,7 @@ pub fn fit(
     let presses = before.presses.max(1) as f64;
     let fitted = plan.parameters.iter().zip(&variables);
     FitSummary {
-        recordings: trials.number,
+        recordings: trials.observations.len() as u64,
         human_actions: before.presses,
         log_likelihood_before: before.log_p / presses,
         log_likelihood: after.log_p / presses,
@@ -208,8 +215,8 @@ pub fn fit(
         most_tries: plan.most_tries as u64,
         begins_with_recordings: plan.start.is_none(),
         begins_with: in_words(begin),
-        others: trials.others.to_vec(),
-        left_out: trials.left_out.to_vec(),
+        others: trials.others.clone(),
+        left_out: trials.left_out.clone(),
         not_fitted: not_fitted(&plan.parameters, begin),
         converged,
         parameters: fitted.map(|(one, found)| FittedParameter::from_variable(*one, one.get(begin), found)).collect(),

@@ -11,11 +11,6 @@ mod exports;
 mod failure;
 mod lab;
 mod list;
-#[cfg(feature = "mcap")]
-mod mcap_exports;
-#[cfg(not(feature = "mcap"))]
-#[path = "cli/without_mcap.rs"]
-mod mcap_exports;
 mod operate;
 mod output;
 mod pools;

@@ -26,6 +26,7 @@
 //! | `mcap` | recordings as MCAP |
 //! | `physics` | the simulated arm and its kinematics |
 //! | `rerun` | streams for Rerun's viewers |
+//! | `ur` | a real UR5's driver, and a simulated controller |
 //!
 //! A build refuses what it leaves out, and names the missing feature: [`tomcom_session::features`].
 

@@ -30,15 +30,15 @@ const BLOCKED_S: f64 = 4.0;
 const FREE_S: f64 = 0.25;
 /// Tracking error of a joint, in radians, and number of cycles with such an error, above which the joint counts as
 /// faulty.
-const DEVIATION_RAD: f64 = 0.05;
-const DEVIATION_CYCLES: u32 = 3;
+pub const DEVIATION_RAD: f64 = 0.05;
+pub const DEVIATION_CYCLES: u32 = 3;
 /// Height of the stick's tip above a button's top, in metres, above which the stick cannot touch the button within one
 /// cycle: in that time the tip moves by 2 mm.
-const MAY_TOUCH_M: f64 = 0.01;
+pub const MAY_TOUCH_M: f64 = 0.01;
 /// Longest time to wait for the click of a button that the arm pushes down, in seconds.
 const CLICKS_WITHIN_S: f64 = 0.1;
 /// The arm counts as standing still if all joints are slower than this, in radians per second.
-pub(crate) const STILL_RAD_S: f64 = 0.02;
+pub const STILL_RAD_S: f64 = 0.02;
 
 /// Hands further away from the arm than this, in metres, do not influence the arm.
 const FAR_M: f64 = SLOWS_M + MARGIN_M + 0.02;
@@ -98,27 +98,24 @@ impl ArmController {
             places.iter().zip(&buttons).filter(|(place, _)| !is_shared(place)).filter_map(|(_, at)| at.as_ref().ok());
         let here = resting_pose(&own.collect::<Vec<_>>());
         let world = PhysicsWorld::new(&arm, &here, &places, around.table_m);
-        let mode = SafetyMode::default();
-        let (way, since_s, rate) = (VecDeque::new(), 0.0, 0.0);
-        let (goal, may_press, halts, watches_hands, waited_s, deviating_cycles) = (None, false, false, true, 0.0, 0);
         ArmController {
             arm,
             world,
             around,
             home: here,
             buttons,
-            way,
-            since_s,
-            rate,
+            way: VecDeque::new(),
+            since_s: 0.0,
+            rate: 0.0,
             here,
-            goal,
-            may_press,
-            halts,
-            mode,
-            watches_hands,
-            waited_s,
+            goal: None,
+            may_press: false,
+            halts: false,
+            mode: SafetyMode::default(),
+            watches_hands: true,
+            waited_s: 0.0,
             free_s: 0.0,
-            deviating_cycles,
+            deviating_cycles: 0,
             touch: ContactTracker::default(),
         }
     }

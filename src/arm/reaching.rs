@@ -4,6 +4,7 @@
 
 use nalgebra::Point3;
 use rand::RngExt;
+use tomcom_core::base::maths::eased;
 use tomcom_core::base::rng::Stream;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, Kitchen};
@@ -191,7 +192,7 @@ impl ReachingHand {
         }
         let Some(mut way) = self.way else { return };
         let share = ((way.done_s + CYCLE_S) / way.takes_s).min(1.0);
-        let eased = share.powi(3) * (10.0 - 15.0 * share + 6.0 * share * share);
+        let eased = eased(share);
         let mut next_m = way.from_m + (way.to_m - way.from_m) * eased;
         next_m.z += way.lifted_m * 4.0 * eased * (1.0 - eased);
         let off_m = distance_m(&self.at(next_m));

@@ -5,6 +5,7 @@
 //! that speed and acceleration begin and end at 0 and never jump. The duration of a leg follows from the speed and
 //! acceleration limits of the leg's kind, which are the defaults of the manufacturer's commands `movej` and `movel`.
 
+use tomcom_core::base::maths::eased;
 use tomcom_core::robot::{JOINTS, JointAngles};
 
 use crate::kinematics::SerialArm;
@@ -41,8 +42,8 @@ pub enum LegKind {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrajectoryLeg {
     pub kind: LegKind,
-    /// Four poses of the arm at equal distances along the leg.
-    poses: [JointAngles; 4],
+    /// Four poses of the arm at equal distances along the leg, which is the cubic through them.
+    pub poses: [JointAngles; 4],
     /// Duration of the leg at full speed, in seconds.
     pub takes_s: f64,
 }
@@ -52,8 +53,7 @@ impl TrajectoryLeg {
     fn over(from: &JointAngles, to: &JointAngles) -> TrajectoryLeg {
         let between = |share: f64| std::array::from_fn(|joint| from[joint] + (to[joint] - from[joint]) * share);
         let furthest = (0..JOINTS).map(|joint| (to[joint] - from[joint]).abs()).fold(0.0, f64::max);
-        let takes_s = (QUINTIC_SPEED * furthest / JOINT_SPEED_RAD_S)
-            .max((QUINTIC_ACCELERATION * furthest / JOINT_ACCELERATION_RAD_S2).sqrt());
+        let takes_s = takes_s(furthest, JOINT_SPEED_RAD_S, JOINT_ACCELERATION_RAD_S2);
         TrajectoryLeg { kind: LegKind::Over, poses: [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(between), takes_s }
     }
 
@@ -72,8 +72,7 @@ impl TrajectoryLeg {
             poses[part] = arm.standing_at([at.x, at.y, z], &poses[part - 1], around)?;
         }
         let length_m = (to_m - at.z).abs();
-        let by_tip_s = (QUINTIC_SPEED * length_m / TIP_SPEED_M_S)
-            .max((QUINTIC_ACCELERATION * length_m / TIP_ACCELERATION_M_S2).sqrt());
+        let by_tip_s = takes_s(length_m, TIP_SPEED_M_S, TIP_ACCELERATION_M_S2);
         let leg = TrajectoryLeg { kind, poses, takes_s: by_tip_s.max(0.05) };
         // Near the arm's base, a short path of the tip needs large joint motions.
         let steepest = (0..=LOOKS).map(|look| leg.slope(look as f64 / LOOKS as f64)).fold(0.0, f64::max);
@@ -102,22 +101,22 @@ impl TrajectoryLeg {
 
     pub fn at(&self, since_s: f64) -> JointAngles {
         let t = if self.takes_s > 0.0 { (since_s / self.takes_s).clamp(0.0, 1.0) } else { 1.0 };
-        self.pose(t.powi(3) * (10.0 - 15.0 * t + 6.0 * t * t))
+        self.pose(eased(t))
     }
 
     pub fn end(&self) -> &JointAngles {
         &self.poses[3]
     }
 
-    /// Four poses of the arm at equal distances along the leg, which is the cubic through them.
-    pub fn poses(&self) -> &[JointAngles; 4] {
-        &self.poses
-    }
-
     /// The first reason why the arm must not follow the leg; none if the arm may follow the leg.
     fn fault(&self, arm: &SerialArm, around: &ArmSurroundings) -> Option<UnreachableReason> {
         (0..=LOOKS).find_map(|look| arm.fault(&self.pose(look as f64 / LOOKS as f64), around))
     }
+}
+
+/// The least time in which the quintic time law covers a length with no more than this speed and acceleration.
+fn takes_s(length: f64, speed: f64, acceleration: f64) -> f64 {
+    (QUINTIC_SPEED * length / speed).max((QUINTIC_ACCELERATION * length / acceleration).sqrt())
 }
 
 /// The trajectory from a pose to a button until the tip is down on the button: up, across, down.

@@ -6,7 +6,7 @@ use clap::{ArgGroup, Args, Parser, Subcommand, ValueEnum};
 
 #[cfg(feature = "ur")]
 use super::arm_server::ArmArgs;
-use super::choices::{ArmArg, SimulatedCondition, concept, whole};
+use super::choices::{arm_parser, concept, simulated_condition_parser, whole};
 use super::data::{CodesArgs, ForgetArgs};
 use super::exports::ExportArgs;
 use super::lab::NewArgs;
@@ -24,6 +24,7 @@ use crate::run::options::{DEFAULT_OUT, DEFAULT_SESSION};
 use tomcom_core::communication::settings::ConceptSpec;
 use tomcom_core::mind::fitting::HumanModelParameter;
 use tomcom_session::headless::SimulationShard;
+use tomcom_session::settings::{ArmKind, Condition};
 
 /// A console for Wizard-of-Oz experiments in human-robot cooperation.
 #[derive(Debug, Parser)]
@@ -145,15 +146,15 @@ pub(super) struct SimulateArgs {
     #[arg(long)]
     pub(super) seed: Option<u64>,
     /// Who sends signals: by default nobody, with a plan as the plan says.
-    #[arg(long, value_enum)]
-    pub(super) condition: Option<SimulatedCondition>,
+    #[arg(long, value_parser = simulated_condition_parser())]
+    pub(super) condition: Option<Condition>,
     /// Communication concept of the assistant, instead of the session file's: tom-com, tom, dev, none, or the command
     /// line of a program of yours.
     #[arg(long, value_parser = concept)]
     pub(super) concept: Option<ConceptSpec>,
     /// Kind of the robot's arm, instead of the session file's; "timed" is faster to simulate.
-    #[arg(long, value_enum)]
-    pub(super) arm: Option<ArmArg>,
+    #[arg(long, value_parser = arm_parser())]
+    pub(super) arm: Option<ArmKind>,
     /// Compute the assistant's recommendations also in trials in which the assistant does not act, and record them. A
     /// scripted wizard reads them where the session shows recommendations; nobody else sees them.
     #[arg(long)]

@@ -5,9 +5,11 @@ use std::net::IpAddr;
 use std::path::PathBuf;
 use std::thread;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::TypedValueParser;
 use tokio::sync::mpsc;
 
+use super::choices::named;
 use super::failure::Failure;
 use super::lab::tell_carried;
 use super::output::{put, put_aside};
@@ -39,28 +41,18 @@ pub(super) struct ArmArgs {
     #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1", value_parser = address)]
     listen: IpAddr,
     /// Generation of controllers that it passes for.
-    #[arg(long, value_enum, default_value = "e")]
-    series: SeriesArg,
+    #[arg(long, default_value = "e", value_parser = series_parser())]
+    series: Series,
     /// File with a script that clients can load by its name; more than once for more.
     #[arg(long, value_name = "FILE")]
     program: Vec<PathBuf>,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum SeriesArg {
-    /// PolyScope 5, outputs at up to 500 Hz
-    E,
-    /// PolyScope 3, outputs at up to 125 Hz
-    Cb3,
-}
-
-impl From<SeriesArg> for Series {
-    fn from(arg: SeriesArg) -> Series {
-        match arg {
-            SeriesArg::E => Series::E,
-            SeriesArg::Cb3 => Series::Cb3,
-        }
-    }
+fn series_parser() -> impl TypedValueParser<Value = Series> {
+    named([
+        ("e", Series::E, "PolyScope 5, outputs at up to 500 Hz"),
+        ("cb3", Series::Cb3, "PolyScope 3, outputs at up to 125 Hz"),
+    ])
 }
 
 /// The ports are those of the manufacturer's controllers, so that clients find them.
@@ -75,7 +67,7 @@ const LINES: usize = 64;
 pub(super) fn serve(args: &ArmArgs) -> Result<(), Failure> {
     let kitchen = files::read_kitchen(&args.layout)?.kitchen;
     tell_carried(&args.layout, None);
-    let mut controller = SimulatedController::new(&kitchen, args.series.into());
+    let mut controller = SimulatedController::new(&kitchen, args.series);
     for path in &args.program {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         controller.add_program(&name, &read_script(path)?);

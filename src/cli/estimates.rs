@@ -10,7 +10,6 @@ use crate::run::files;
 use tomcom_study::analysis::fitting;
 use tomcom_study::fit;
 
-/// Runs the command `tomcom fit RECORDING...`.
 pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
     let start = args.start.as_deref().map(tomcom_session::files::read_human_model).transpose()?;
     let unwritable = |path: &Path, error: std::io::Error| {

@@ -1,17 +1,22 @@
 //! The command `tomcom export`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args};
 use serde::Serialize;
 
 use super::failure::Failure;
-use super::mcap_exports::{self, ExportedMcap};
 use super::output::{OutputFormat, print, progress};
 use crate::run::options::DEFAULT_OUT;
+#[cfg(not(feature = "mcap"))]
+use tomcom_session::features::{Feature, MissingFeature};
+use tomcom_session::files::file_error::FileResult;
 use tomcom_study::annotation_export::{self, AnnotationFormat, AnnotationSummary};
 use tomcom_study::bids_export::{self, BidsSummary};
 use tomcom_study::files::recordings;
+#[cfg(feature = "mcap")]
+use tomcom_study::mcap_export::{self, McapSummary};
+use tomcom_study::parallel;
 
 /// Exports recordings for other programs.
 ///
@@ -59,18 +64,21 @@ pub(super) struct ExportArgs {
     format: OutputFormat,
 }
 
+/// A build without MCAP exports none.
+#[cfg(not(feature = "mcap"))]
+type McapSummary = ();
+
 /// JSON output of the export.
 #[derive(Debug, Serialize)]
 struct ExportSummary {
     /// Summary of the BIDS data set.
     bids: Option<BidsSummary>,
     /// Summary of the MCAP files with their numbers of messages.
-    mcap: Option<Vec<ExportedMcap>>,
+    mcap: Option<Vec<McapSummary>>,
     /// Files of annotations.
     annotations: Option<Vec<AnnotationSummary>>,
 }
 
-/// Runs the command `tomcom export`.
 pub(super) fn export(args: &ExportArgs) -> Result<(), Failure> {
     let recordings = meant(&args.recordings)?;
     let mut bids = None;
@@ -80,10 +88,10 @@ pub(super) fn export(args: &ExportArgs) -> Result<(), Failure> {
         bar.finish_and_clear();
     }
     let mut text = bids.as_ref().map(bids_export::describe).unwrap_or_default();
-    let mut files = None;
+    let mut mcap = None;
     if args.mcap {
-        let (messages, told) = mcap_exports::export(&recordings)?;
-        files = Some(messages);
+        let (summaries, told) = export_mcap(&recordings)?;
+        mcap = Some(summaries);
         text += &told;
     }
     let asked =
@@ -96,19 +104,33 @@ pub(super) fn export(args: &ExportArgs) -> Result<(), Failure> {
     }
     let mut annotations = None;
     if !formats.is_empty() {
-        let bar = progress(recordings.len() as u64, "recordings");
-        let done = tomcom_study::parallel::each(
-            &recordings,
-            |recording| annotation_export::export(recording, &formats, args.blind),
-            || bar.inc(1),
-        );
-        bar.finish_and_clear();
-        let summaries: Vec<AnnotationSummary> =
-            done.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
+        let files = each(&recordings, |recording| annotation_export::export(recording, &formats, args.blind))?;
+        let summaries: Vec<AnnotationSummary> = files.into_iter().flatten().collect();
         text += &annotation_export::describe(&summaries);
         annotations = Some(summaries);
     }
-    print(args.format, &ExportSummary { bids, mcap: files, annotations }, || text)
+    print(args.format, &ExportSummary { bids, mcap, annotations }, || text)
+}
+
+/// Exports recordings as MCAP files; the summaries, and their text.
+#[cfg(feature = "mcap")]
+fn export_mcap(recordings: &[PathBuf]) -> Result<(Vec<McapSummary>, String), Failure> {
+    let summaries = each(recordings, mcap_export::export)?;
+    let text = mcap_export::describe(&summaries);
+    Ok((summaries, text))
+}
+
+#[cfg(not(feature = "mcap"))]
+fn export_mcap(_: &[PathBuf]) -> Result<(Vec<McapSummary>, String), Failure> {
+    Err(MissingFeature(Feature::Mcap).into())
+}
+
+/// Exports each of the recordings, on all processors.
+fn each<T: Send>(recordings: &[PathBuf], export: impl Fn(&Path) -> FileResult<T> + Sync) -> Result<Vec<T>, Failure> {
+    let bar = progress(recordings.len() as u64, "recordings");
+    let done = parallel::each(recordings, |recording| export(recording), || bar.inc(1));
+    bar.finish_and_clear();
+    Ok(done.into_iter().collect::<FileResult<Vec<T>>>()?)
 }
 
 /// Collects the recordings at or below these paths, each recording once.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::choices::{ArmArg, ConditionArg, ParticipantArg, concept, gaze_parser};
+use super::choices::{arm_parser, concept, condition_parser, gaze_parser, participant_parser};
 use super::failure::{Failure, wrong_setting};
 use super::lab::tell_carried;
 use super::list::chosen;
@@ -42,8 +42,8 @@ pub(super) struct OperateFlags {
     #[arg(long)]
     pub(super) code: Option<String>,
     /// Who plays the human, instead of the session file's setting.
-    #[arg(long, value_enum)]
-    pub(super) participant: Option<ParticipantArg>,
+    #[arg(long, value_parser = participant_parser())]
+    pub(super) participant: Option<ParticipantKind>,
     /// Gaze source, instead of the session file's.
     #[arg(long, value_parser = gaze_parser())]
     pub(super) gaze: Option<GazeSource>,
@@ -56,11 +56,11 @@ pub(super) struct OperateFlags {
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub(super) gaze_start: Option<f64>,
     /// Kind of the robot's arm, instead of the session file's.
-    #[arg(long, value_enum)]
-    pub(super) arm: Option<ArmArg>,
+    #[arg(long, value_parser = arm_parser())]
+    pub(super) arm: Option<ArmKind>,
     /// Who sends signals, instead of the session file's condition.
-    #[arg(long, value_enum)]
-    pub(super) condition: Option<ConditionArg>,
+    #[arg(long, value_parser = condition_parser())]
+    pub(super) condition: Option<Condition>,
     /// Communication concept of the assistant, instead of the session file's: tom-com, tom, dev, none, or the command
     /// line of a program of yours.
     #[arg(long, value_parser = concept)]
@@ -116,12 +116,12 @@ pub(super) fn new_session(
     let mut files = files::read_session(name)?;
     tell_carried(name, Some(&flags.out));
     let overrides = SettingOverrides {
-        participant: flags.participant.map(ParticipantKind::from),
-        arm: flags.arm.map(ArmKind::from),
+        participant: flags.participant,
+        arm: flags.arm,
         gaze: flags.gaze,
         gaze_file: flags.gaze_file.clone(),
         gaze_start_s: flags.gaze_start,
-        condition: flags.condition.map(Condition::from),
+        condition: flags.condition,
         concept: flags.concept.clone(),
         seed: flags.seed,
         listen: flags.listen,
@@ -149,7 +149,7 @@ pub(super) fn new_session(
                 files,
                 participant,
                 out,
-                kind: flags.participant.map(ParticipantKind::from),
+                kind: flags.participant,
                 compare,
                 observe: flags.observe,
             })?)

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::choices::{ArmArg, whole};
+use super::choices::{arm_parser, whole};
 use super::failure::{Failure, wrong_argument};
 use super::lab::tell_carried;
 use super::output::{OutputFormat, print, progress, put_aside};
@@ -86,8 +86,8 @@ struct PoolArgs {
     #[arg(long, conflicts_with = "from")]
     seed: Option<u64>,
     /// Kind of the robot's arm, instead of the session file's; "timed" is faster to simulate.
-    #[arg(long, value_enum)]
-    arm: Option<ArmArg>,
+    #[arg(long, value_parser = arm_parser())]
+    arm: Option<ArmKind>,
     /// Simulate one shard of the pool, such as "2/8", the second of eight, for job arrays, and only write it to --out.
     #[arg(
         long,
@@ -121,7 +121,7 @@ impl PoolArgs {
         let mut files = read_session(&self.plan)?;
         tell_carried(&self.plan, None);
         let spec = &mut files.spec;
-        spec.robot.arm = self.arm.map_or(spec.robot.arm, ArmKind::from);
+        spec.robot.arm = self.arm.unwrap_or(spec.robot.arm);
         headless::require(spec, &self.plan)?;
         let pool = match self.from.is_empty() {
             false => self.read(files)?,
@@ -178,7 +178,6 @@ impl PoolArgs {
     }
 }
 
-/// Runs the command `tomcom power PLAN`.
 pub(super) fn power(args: &PowerArgs) -> Result<(), Failure> {
     args.csv.as_deref().map_or(Ok(()), pool_file::check_table)?;
     args.picture.as_deref().map_or(Ok(()), |file| check_picture(file, "a picture of power"))?;
@@ -201,7 +200,6 @@ pub(super) fn power(args: &PowerArgs) -> Result<(), Failure> {
     print(args.pool.format, &found, || power::describe(&found))
 }
 
-/// Runs the command `tomcom arms PLAN`.
 pub(super) fn arms(args: &ArmsArgs) -> Result<(), Failure> {
     let Some(pool) = args.pool.pool(true, false)? else { return Ok(()) };
     if !pool.header.arms {

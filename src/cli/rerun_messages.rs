@@ -2,8 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use serde::Serialize;
+
 use super::failure::Failure;
-use super::output::{progress, put};
+use super::output::{OutputFormat, print, progress, put};
 use super::review::AskedLandmarks;
 use crate::run::open_viewer::{
     OngoingRecording, RecordedLandmark, RerunReviewOutcome, RerunReviewRequest, RerunStreamFile, RerunViewerError,
@@ -30,8 +32,26 @@ pub(super) fn save_all(recordings: &[PathText]) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Landmarks of recordings as JSON.
+#[derive(Serialize)]
+struct LandmarkList {
+    landmarks: Vec<LandmarkSummary>,
+}
+
+#[derive(Serialize)]
+struct LandmarkSummary {
+    recording: String,
+    /// "error", "signal", "note" or "estimated false belief".
+    kind: &'static str,
+    /// On the trial's clock.
+    from_s: f64,
+    /// Null if it lasts to the end of the recording.
+    until_s: Option<f64>,
+    words: String,
+}
+
 /// Prints the landmarks that are asked for in these recordings, each as the command that opens the viewer there, with its end
-/// and what happened as its comment.
+/// and what happened as its comment, or all as JSON.
 pub(super) fn list_landmarks(recordings: &[PathBuf], asked: AskedLandmarks) -> Result<(), Failure> {
     let kinds = [
         (asked.errors, ReplayLandmark::Error),
@@ -41,11 +61,18 @@ pub(super) fn list_landmarks(recordings: &[PathBuf], asked: AskedLandmarks) -> R
     ];
     let kinds: Vec<ReplayLandmark> =
         kinds.into_iter().filter_map(|(is_asked, kind)| is_asked.then_some(kind)).collect();
+    let mut all = Vec::new();
     for recording in recordings {
         let mut text = String::new();
-        for RecordedLandmark { from, until, words } in landmarks(recording, &kinds)? {
+        for RecordedLandmark { kind, from, until, words } in landmarks(recording, &kinds)? {
             // A false belief can last as short as the estimate tells.
             if until.is_some_and(|until| until.secs_since(from) < asked.least) {
+                continue;
+            }
+            if asked.format == OutputFormat::Json {
+                let (recording, kind) = (recording.display().to_string(), kind.name());
+                let (from_s, until_s) = (from.as_secs_f64(), until.map(SessionTime::as_secs_f64));
+                all.push(LandmarkSummary { recording, kind, from_s, until_s, words });
                 continue;
             }
             // To the millisecond, as the viewer and exported annotations have it.
@@ -53,13 +80,19 @@ pub(super) fn list_landmarks(recordings: &[PathBuf], asked: AskedLandmarks) -> R
             let command = format!("tomcom review {} --at {}", shell_word(recording), from.with_ms());
             text += &format!("{command}  # to {until}, {words}\n");
         }
+        if asked.format == OutputFormat::Json {
+            continue;
+        }
         if text.is_empty() {
             let names: Vec<&str> = kinds.iter().map(|kind| kind.name()).collect();
             text = format!("{}: no {}\n", recording.display(), names.join(", no "));
         }
         put(&text)?;
     }
-    Ok(())
+    match asked.format {
+        OutputFormat::Json => print(OutputFormat::Json, &LandmarkList { landmarks: all }, String::new),
+        OutputFormat::Text => Ok(()),
+    }
 }
 
 /// Opens recordings in the Rerun viewer at a time on the trial's clock, or writes their stream to a file. `web`: use a

@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::failure::Failure;
 use super::list::each_chosen;
+use super::output::OutputFormat;
 use super::rerun_messages::{list_landmarks, open};
 use tomcom_core::base::time::SessionTime;
 use tomcom_session::features::Feature;
@@ -52,6 +53,9 @@ pub(super) struct AskedLandmarks {
     /// With them, only what lasts at least this long.
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0, hide_default_value = true, value_parser = at_least_zero)]
     pub(super) least: f64,
+    /// With them, the output format.
+    #[arg(long, value_enum, default_value = "text")]
+    pub(super) format: OutputFormat,
 }
 
 impl AskedLandmarks {
@@ -92,9 +96,14 @@ pub(super) fn review(args: &ReviewArgs) -> Result<(), Failure> {
             recordings.len()
         )));
     }
-    if args.asked.least > 0.0 && !args.asked.is_any() {
-        let help = "--least with --errors, --signals or --beliefs";
-        return Err(Failure::Wrong(miette::miette!(help = help, "found --least, with nothing to list")));
+    let without_list = match args.asked {
+        asked if asked.is_any() => None,
+        AskedLandmarks { format: OutputFormat::Json, .. } => Some("--format json"),
+        asked => (asked.least > 0.0).then_some("--least"),
+    };
+    if let Some(option) = without_list {
+        let help = format!("{option} with --errors, --signals or --beliefs");
+        return Err(Failure::Wrong(miette::miette!(help = help, "found {option}, with nothing to list")));
     }
     let recordings = each_chosen(&recordings, "open")?;
     match args.asked.is_any() {

@@ -1,4 +1,4 @@
-//! Options of the command `tomcom simulate`, and their checks.
+//! The command `tomcom simulate`.
 
 use super::args::SimulateArgs;
 use super::failure::{Failure, every_trial_failed, wrong_argument};
@@ -13,10 +13,9 @@ use tomcom_people::wizard::WizardKind;
 use tomcom_session::SessionSpec;
 use tomcom_session::features::Feature;
 use tomcom_session::headless;
-use tomcom_session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
+use tomcom_session::settings::{Condition, GazeSource, ParticipantKind};
 use tomcom_session::study_arm::StudyArm;
 
-/// Runs the command `tomcom simulate SESSION`.
 pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     if args.rerun {
         Feature::Rerun.require()?;
@@ -51,7 +50,7 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     tell_unused(args, &files.spec);
     tell_differences(args, &files.spec);
     // If there is a plan, the plan defines the conditions.
-    files.spec.trial.condition = args.condition.map_or(Condition::None, Condition::from);
+    files.spec.trial.condition = args.condition.unwrap_or(Condition::None);
     if files.spec.unattended(files.spec.trial.condition) != files.spec.trial.condition {
         let found = "--condition wizard, with a session file whose wizard is a person".to_string();
         return Err(wrong_argument(&args.session, found, "[wizard] with kind = \"scripted\" in the session file"));
@@ -59,7 +58,7 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     if let Some(concept) = &args.concept {
         files.spec.assistant.concept = concept.clone();
     }
-    files.spec.robot.arm = args.arm.map_or(files.spec.robot.arm, ArmKind::from);
+    files.spec.robot.arm = args.arm.unwrap_or(files.spec.robot.arm);
     headless::require(&files.spec, &args.session)?;
     files.spec.assistant.shadow = if args.shadow { ShadowMode::On } else { ShadowMode::Off };
     let simulation = simulate::SimulationRequest { files, trials, shard: args.shard, out: args.out.clone() };
@@ -84,7 +83,7 @@ fn tell_unused(args: &SimulateArgs, spec: &SessionSpec) {
     }
     let acts = args.condition.is_none() && spec.trial.condition == Condition::Assistant;
     // An assistant that acts computes recommendations anyway.
-    let is_asked = args.shadow || args.condition.map(Condition::from) == Some(Condition::Assistant);
+    let is_asked = args.shadow || args.condition == Some(Condition::Assistant);
     let advises = !is_asked && spec.assistant.shadow == ShadowMode::On;
     let unused = [
         (acts, "the assistant does not act", "--condition assistant"),
@@ -121,10 +120,9 @@ fn tell_differences(args: &SimulateArgs, spec: &SessionSpec) {
 
 /// Refuses options that have no effect in the given condition of the simulated trials.
 fn check_condition(args: &SimulateArgs, is_planned: bool) -> Result<(), Failure> {
-    let condition = args.condition.map(Condition::from);
-    let is_silent = matches!(condition, None | Some(Condition::None));
+    let is_silent = matches!(args.condition, None | Some(Condition::None));
     let (found, remedy) = match () {
-        () if is_planned && condition.is_some() => {
+        () if is_planned && args.condition.is_some() => {
             ("--condition, of a session with a plan", "no --condition: the plan says who sends signals")
         }
         () if args.concept.is_some() && !is_planned && is_silent && !args.shadow => {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::choices::{ArmArg, concept, whole};
+use super::choices::{arm_parser, concept, whole};
 use super::failure::{Failure, every_trial_failed, wrong_argument};
 use super::output::{OutputFormat, print, progress, put};
 use crate::run::files::read_session;
@@ -44,8 +44,8 @@ pub(super) struct TournamentArgs {
     #[arg(long)]
     seed: Option<u64>,
     /// Kind of the robot's arm, instead of the session file's; "timed" is faster to simulate.
-    #[arg(long, value_enum)]
-    arm: Option<ArmArg>,
+    #[arg(long, value_parser = arm_parser())]
+    arm: Option<ArmKind>,
     /// Folder for the recordings, with a folder for each concept. Trials that are there already are read.
     #[arg(long, default_value = "sessions/tournament")]
     out: PathBuf,
@@ -65,12 +65,10 @@ pub(super) struct TournamentArgs {
 #[command(after_help = "Example: tomcom protocol > protocol.schema.json\nMore: docs/your-own-mind.md")]
 pub(super) struct ProtocolArgs {}
 
-/// Runs the command `tomcom protocol`.
 pub(super) fn protocol() -> Result<(), Failure> {
     Ok(put(SCHEMA)?)
 }
 
-/// Runs the command `tomcom tournament SESSION`.
 pub(super) fn tournament(args: &TournamentArgs) -> Result<(), Failure> {
     args.csv.as_deref().map_or(Ok(()), check_table)?;
     args.picture.as_deref().map_or(Ok(()), |file| check_picture(file, "a picture of a tournament"))?;
@@ -87,7 +85,7 @@ pub(super) fn tournament(args: &TournamentArgs) -> Result<(), Failure> {
         return Err(wrong_argument(&args.session, found, "at most as many parts as trials, so that no part is empty"));
     }
     files.spec.seed = args.seed.unwrap_or(files.spec.seed);
-    files.spec.robot.arm = args.arm.map_or(files.spec.robot.arm, ArmKind::from);
+    files.spec.robot.arm = args.arm.unwrap_or(files.spec.robot.arm);
     headless::require(&files.spec, &args.session)?;
     let (concepts, trials, shard, out) = (args.concepts.clone(), args.trials, args.shard, args.out.clone());
     let request = TournamentRequest { files, concepts, trials, shard, out };

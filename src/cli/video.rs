@@ -83,7 +83,6 @@ struct AttachSummary {
     films: Vec<AttachedFilm>,
 }
 
-/// Runs the command `tomcom video`.
 pub(super) fn video(args: &VideoArgs) -> Result<(), Failure> {
     let VideoCommand::Attach(args) = &args.command;
     let request = match (args.offset, args.at) {

@@ -125,7 +125,8 @@ pub(super) fn differ(model: &mut ConsoleModel, session: &Session, step: Comparis
     match compared.chosen() {
         None => model.say(NoticeLevel::Refused, "signals of wizard and assistant do not differ so far"),
         Some((at, seen)) if step == ComparisonAction::Open => {
-            model.dialog = Some(Dialog::Difference(seen.opened(&session.kitchen, &seen.differences[at])));
+            let told = seen.opened(&session.kitchen, &seen.differences[at]);
+            model.dialog = Some(Dialog::Details("What wizard and assistant knew", told));
         }
         Some(_) => {}
     }

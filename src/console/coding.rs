@@ -107,7 +107,7 @@ struct CodeChange {
 #[derive(Clone, Debug, PartialEq)]
 pub struct RaterSession {
     pub party: CodingRaters,
-    /// Errors to be coded, in order of time; for two raters, only those that they have to settle.
+    /// Errors to be coded, in order of time; for two raters, their disagreements.
     pub errors: Vec<ListedError>,
     /// Codes so far: the causes of errors, by the sequence number of the press.
     pub codes: RaterCodes,
@@ -236,9 +236,9 @@ impl RaterSession {
         let number = self.errors.len();
         Some(match &self.party {
             CodingRaters::Pair { .. } if number == 0 => {
-                "nothing to settle: both raters agree on every error".to_string()
+                "nothing to settle: the raters agree on what both coded".to_string()
             }
-            CodingRaters::Pair { .. } => "every error is settled; next: tomcom study".to_string(),
+            CodingRaters::Pair { .. } => "all is settled; tomcom codes tells what lacks a code".to_string(),
             CodingRaters::Rater(_) if number == 0 => "no error in this recording: nothing to code".to_string(),
             CodingRaters::Rater(rater) => {
                 let next = match self.finished.first() {

@@ -63,7 +63,9 @@ pub enum Dialog {
     Reason(ReasonFor, String, TextInput),
     /// Text input of an answer to the shown questionnaire item: words or a number.
     Answer(TextInput),
-    Difference(Vec<String>),
+    /// Lines of text below a title: what wizard and assistant knew at a difference, or where a replay stands; any key closes
+    /// it.
+    Details(&'static str, Vec<String>),
     /// Report of a wizard training, as lines of text; closed with enter.
     Report(Vec<String>),
 }
@@ -446,8 +448,10 @@ pub struct Playback {
     pub playing: bool,
     /// Playback speed, as an index into [`SPEEDS`].
     pub speed: usize,
-    /// Errors, signals and false beliefs of the recording, as far as it was read, by the trial's clock.
+    /// Errors, signals, false beliefs and notes of the recording, as far as it was read, by the trial's clock.
     pub marks: Arc<[(SessionTime, ReplayLandmark)]>,
+    /// The recording's events in words, each with the action that goes there, while the palette is open, which finds them.
+    pub told: Arc<[(ReplayAction, String)]>,
     pub trial_length: SessionTime,
     /// Number of events of the recording up to the replay's position.
     pub event: usize,

@@ -168,8 +168,13 @@ fn choose(
         (model.dialog, model.answered) = (None, Some(model.clock));
         return Some(ConsoleCommand::Move(to));
     }
-    let left = lists::actions(model, &cursor);
-    let reply = cursor.key(left.len(), code);
+    let (left, events) = (lists::actions(model, &cursor), lists::events(model, &cursor));
+    let reply = cursor.key(left.len() + events.len(), code);
+    let event = cursor.at.checked_sub(left.len()).and_then(|at| events.get(at)).filter(|_| reply == ListReply::Taken);
+    if let Some(&&(to, _)) = event {
+        (model.dialog, model.answered) = (None, Some(model.clock));
+        return Some(ConsoleCommand::Move(to));
+    }
     let chosen = left.get(cursor.at).filter(|_| reply == ListReply::Taken);
     let chosen = chosen.and_then(|line| Some((line.action.clone(), *line.chords.first()?, line.help.clone())));
     model.dialog = Some(Dialog::Palette(cursor)).filter(|_| reply == ListReply::Open);
@@ -190,7 +195,7 @@ fn choose(
 fn may_leave_for_quit(model: &ConsoleModel) -> bool {
     matches!(
         model.dialog,
-        Some(Dialog::Pick(_) | Dialog::Palette(_) | Dialog::Preflight | Dialog::Help(_) | Dialog::Difference(_))
+        Some(Dialog::Pick(_) | Dialog::Palette(_) | Dialog::Preflight | Dialog::Help(_) | Dialog::Details(..))
     )
 }
 
@@ -263,7 +268,7 @@ fn answer(
         panels::leaf(model, *look);
         return None;
     }
-    if let (Dialog::Difference(_), Some(KeyAction::Differ(step @ (ComparisonAction::Next | ComparisonAction::Last)))) =
+    if let (Dialog::Details(..), Some(KeyAction::Differ(step @ (ComparisonAction::Next | ComparisonAction::Last)))) =
         (&dialog, &action)
     {
         differ(model, session, *step);

@@ -2,8 +2,6 @@
 //! recordings; and the prompt before a recording.
 
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
-use fuzzy_matcher::FuzzyMatcher;
-use fuzzy_matcher::skim::SkimMatcherV2;
 
 use super::chord::KeyChord;
 use super::console_model::{ConsoleModel, Dialog, ReplayAction};
@@ -66,8 +64,8 @@ impl ListCursor {
     }
 
     /// Indices of the rows with these texts that match the filter, the best one first. Only the best kind of match is
-    /// kept, so that a whole code leaves its own row: each typed word begins a word; or a line of the row's text has the
-    /// typed letters in one piece, signs and spaces left out; or it has them in their order.
+    /// kept, so that a whole code leaves its own row: each typed word begins a word; or each lies within a word; or the
+    /// typed letters are those of a line from the beginning of a word on, signs and spaces left out.
     pub fn found(&self, rows: impl Iterator<Item = String>) -> Vec<usize> {
         let mut found = self.ranked(rows);
         let best = found.first().map(|((kind, _), _)| *kind);
@@ -83,7 +81,6 @@ impl ListCursor {
     /// The rows that match: kind of the match, how bad it is, and index; the best one first.
     fn ranked(&self, rows: impl Iterator<Item = String>) -> Vec<((u8, i64), usize)> {
         let typed = self.filter.to_lowercase();
-        let scattered = SkimMatcherV2::default();
         let joined = |line: &str| line.chars().filter(|letter| letter.is_alphanumeric()).collect::<String>();
         let rank = |text: String| {
             let text = text.to_lowercase();
@@ -91,6 +88,7 @@ impl ListCursor {
             let is_word = |letter: Option<char>| letter.is_some_and(char::is_alphanumeric);
             let begins = |at: usize| is_word(text[at..].chars().next()) && !is_word(text[..at].chars().next_back());
             let ends = |rest: &str| !is_word(rest.chars().next());
+            let word_of = |rest: &str| rest.split(|letter: char| !letter.is_alphanumeric()).take(1).collect::<String>();
             let words = || text.char_indices().filter(|(at, _)| begins(*at)).map(|(at, _)| &text[at..]);
             let has = |is_it: &dyn Fn(&str, &str) -> bool| {
                 typed.split_whitespace().filter(|typed| words().any(|word| is_it(word, typed))).count()
@@ -101,10 +99,10 @@ impl ListCursor {
                 () if has(&|word, typed| word.starts_with(typed)) == all => {
                     Some((0, (all - has(&|word, typed| word.strip_prefix(typed).is_some_and(ends))) as i64))
                 }
-                () if text.lines().any(|line| joined(line).contains(&letters)) => Some((1, 0)),
+                () if has(&|rest, typed| word_of(rest).contains(typed)) == all => Some((1, 0)),
                 () => {
-                    let scores = text.lines().filter_map(|line| scattered.fuzzy_match(line, &letters));
-                    scores.max().map(|score| (2, -score))
+                    let mut lines = words().filter_map(|rest| rest.lines().next());
+                    lines.any(|line| joined(line).starts_with(&letters)).then_some((2, 0))
                 }
             }
         };
@@ -215,7 +213,7 @@ impl Picker {
         let all = self.all(session);
         let labels = all.iter().map(|choice| choice.label.clone());
         let found = match self.takes_words(session) {
-            // Words of another reason must not match an entry by letters here and there.
+            // Words of another reason must not match an entry by a part of a word.
             true => self.cursor.begun(labels),
             false => self.cursor.found(labels),
         };
@@ -369,6 +367,13 @@ pub fn actions<'a>(model: &'a ConsoleModel, cursor: &ListCursor) -> Vec<&'a KeyB
         found.sort_by_key(|line| (!is_keyed(line), model.palette_idle.contains(&line.action)));
     }
     found
+}
+
+/// The events of a replay whose words match what is typed to its palette, with the action that goes there.
+pub fn events<'a>(model: &'a ConsoleModel, cursor: &ListCursor) -> Vec<&'a (ReplayAction, String)> {
+    let Some(playback) = model.playback.as_ref().filter(|_| cursor.filter.len() > 1) else { return Vec::new() };
+    let found = cursor.found(playback.told.iter().map(|(_, words)| words.clone()));
+    found.into_iter().map(|index| &playback.told[index]).collect()
 }
 
 /// Where the text that is typed to a replay's palette leads, with it in words: to a time of the trial's clock (`2:13`), or to

@@ -7,6 +7,7 @@ use super::console_model::{ComparisonAction, ConsoleModel, Dialog};
 use super::form::sheet;
 use super::key_action::ViewAction;
 use super::lists::{PickerKind, ReasonFor};
+use super::text_columns::wrap;
 use super::view::help::help_pages;
 use super::view::regions::{LEAST, PanelAreas, ScreenSize};
 use tomcom_session::Session;
@@ -29,6 +30,10 @@ pub fn look(model: &mut ConsoleModel, session: &Session, look: ViewAction) {
         ViewAction::Next => step(model, session, true),
         ViewAction::Last => step(model, session, false),
         ViewAction::Open if opens_difference(model) => differ(model, session, ComparisonAction::Open),
+        ViewAction::Open if let Some(words) = cut_landmark(model, session) => {
+            let lines = words.split("; ").map(str::to_string).collect();
+            model.dialog = Some(Dialog::Details("Where the recording stands", lines));
+        }
         ViewAction::Open => {
             model.alone = match model.alone {
                 Some(_) => None,
@@ -57,6 +62,16 @@ pub(super) fn is_away(model: &ConsoleModel) -> bool {
 /// Whether the key that opens a panel opens the selected difference of a comparison: while no other panel has the focus.
 pub(super) fn opens_difference(model: &ConsoleModel) -> bool {
     model.comparison.is_some() && matches!((model.alone, model.focus), (Some(Panel::Comparison), _) | (None, None))
+}
+
+/// The words of the landmark or event at which a replay stands, if the line of messages is too short for them: while no
+/// panel has the focus, the key that opens a panel shows all of them.
+pub(super) fn cut_landmark<'a>(model: &'a ConsoleModel, session: &Session) -> Option<&'a str> {
+    let (_, words) = model.playback.as_ref()?.stands_at()?;
+    let is_free = model.alone.is_none() && model.focus.is_none() && model.comparison.is_none();
+    let area = PanelAreas::showing(model.size, session, model).message;
+    let is_cut = wrap(words, area.width.saturating_sub(3)).len() > usize::from(area.height);
+    (is_free && is_cut).then_some(words)
 }
 
 /// The panels that can get the focus: those on the screen or, while one is shown alone, all that may be seen.
@@ -184,7 +199,7 @@ fn name(dialog: &Dialog) -> &'static str {
         Dialog::Note(_) => "note",
         Dialog::Reason(..) => "reason",
         Dialog::Answer(_) => "answer",
-        Dialog::Difference(_) => "difference",
+        Dialog::Details(..) => "difference",
         Dialog::Report(_) => "report",
         Dialog::Pick(list) => match list.kind {
             PickerKind::Place => "correct_place",

@@ -7,7 +7,7 @@ use super::form::sheet;
 use super::interventions::{can_redo, skippable};
 use super::key_action::{KeyAction, KeyBinding, ManualAction, RaterAction, ViewAction};
 use super::key_press::is_right_after_list;
-use super::panels::opens_difference;
+use super::panels::{cut_landmark, opens_difference};
 use super::preflight;
 use tomcom_core::communication::Sender;
 use tomcom_session::admit::admit;
@@ -77,7 +77,7 @@ fn reaches(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool 
             KeyAction::Quit => has_control(),
             _ => stops,
         },
-        Some(Dialog::Pick(_) | Dialog::Palette(_) | Dialog::Help(_) | Dialog::Difference(_)) => {
+        Some(Dialog::Pick(_) | Dialog::Palette(_) | Dialog::Help(_) | Dialog::Details(..)) => {
             stops || (*action == KeyAction::Quit && has_control())
         }
         Some(Dialog::Quit | Dialog::EndTrial | Dialog::EndTutorial | Dialog::Calibration) => stops,
@@ -106,7 +106,7 @@ fn does(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {
         KeyAction::Differ(step) => differs(model, *step),
         KeyAction::Rate(rate) => rates(model, *rate),
         KeyAction::Look(ViewAction::Open) if opens_difference(model) => differs(model, ComparisonAction::Open),
-        KeyAction::Look(ViewAction::Open) => model.focus.is_some(),
+        KeyAction::Look(ViewAction::Open) => model.focus.is_some() || cut_landmark(model, session).is_some(),
         KeyAction::SwitchLayer | KeyAction::Look(_) | KeyAction::Help | KeyAction::Palette | KeyAction::Quit => true,
     }
 }

@@ -139,7 +139,7 @@ pub fn replay() -> Vec<KeyBinding> {
         to("play_pause", sign('.'), ReplayAction::PlayPause, "play or pause the recording", "play/pause"),
         line("quit", &ctrl('c'), KeyAction::Quit, CONSOLE, "quit", "quit"),
         line("belief", &ctrl('b'), KeyAction::Belief, CONSOLE, BELIEF, ""),
-        palette("list all actions; type 2:13 or error 7 to go there"),
+        palette("list actions; go to 2:13, error 7 or typed words"),
         line("help", &sign('?'), KeyAction::Help, CONSOLE, "show this help", "help"),
     ];
     lines.extend(looks());
@@ -152,7 +152,7 @@ pub fn replay() -> Vec<KeyBinding> {
         to("last_error", sign('w'), BackTo(Error), "go to the previous error", ""),
         to("next_signal", sign('s'), On(Signal), "go to the next signal", "signal"),
         to("last_signal", sign('a'), BackTo(Signal), "go to the previous signal", ""),
-        to("next_marker", sign('m'), On(Marker), "go to the next note", ""),
+        to("next_marker", sign('m'), On(Marker), "go to the next note", "note"),
         to("last_marker", sign('n'), BackTo(Marker), "go to the previous note", ""),
         to("next_false_belief", sign('b'), On(FalseBelief), "go to the next estimated false belief", "false belief"),
         to("last_false_belief", sign('v'), BackTo(FalseBelief), "go to the previous estimated false belief", ""),
@@ -177,7 +177,7 @@ fn codes() -> [KeyBinding; 9] {
     let undo_keys = [KeyChord::char('u'), KeyChord::ctrl('z')];
     let next = "go to the next error, or to the selected error";
     [
-        code("code_next", &plain(Enter), RaterAction::Next, next, "next error"),
+        code("code_next", &plain(Enter), RaterAction::Next, next, "next"),
         code("code_last", &plain(Backspace), RaterAction::Last, "go to the previous error", ""),
         cause("slip", '1', ErrorCauseKind::Slip),
         cause("race", '2', ErrorCauseKind::Race),
@@ -207,7 +207,9 @@ pub fn causes(kitchen: &Kitchen, marks: &[Option<KeyChord>]) -> Vec<KeyBinding> 
     let cause = |(index, mark): (usize, &Option<KeyChord>)| {
         let (id, chord) = (LocationId(index as u8), (*mark)?);
         let help = format!("{} {}", ErrorCauseKind::Belief.title(), kitchen.location(id).label());
-        Some(line(&kitchen.location(id).name, &[chord], KeyAction::Rate(RaterAction::Belief(id)), CODING, &help, ""))
+        let footer = if marks[..index].iter().all(Option::is_none) { "belief" } else { "" };
+        let rate = KeyAction::Rate(RaterAction::Belief(id));
+        Some(line(&kitchen.location(id).name, &[chord], rate, CODING, &help, footer))
     };
     marks.iter().enumerate().filter_map(cause).collect()
 }

@@ -4,10 +4,12 @@
 
 use std::collections::BTreeMap;
 use std::net::IpAddr;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use tokio::sync::watch;
+
+use crate::lock;
 
 /// Limits for the numbers of open connections of a server.
 #[derive(Clone, Copy, Debug)]
@@ -88,7 +90,7 @@ impl ConnectionTable {
     /// `None` if no connection can be replaced, so that the new one has to be refused.
     pub fn arrive(self: &Arc<Self>, address: IpAddr, now: Instant) -> Option<NewConnection> {
         let address = network_of(address);
-        let mut inner = self.lock();
+        let mut inner = lock(&self.inner);
         let of_address = inner.entries.iter().filter(|entry| entry.address == address).count();
         let is_full = of_address >= self.limits.per_address || inner.entries.len() >= self.limits.most;
         if is_full {
@@ -124,10 +126,6 @@ impl ConnectionTable {
         // Connections that wait for admission are replaced before admitted connections.
         candidates.min_by_key(|(_, entry)| (!is_waiting(entry), entry.heard)).map(|(index, _)| index)
     }
-
-    fn lock(&self) -> MutexGuard<'_, ConnectionEntries> {
-        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
-    }
 }
 
 impl ConnectionHandle {
@@ -141,7 +139,7 @@ impl ConnectionHandle {
     #[must_use]
     pub fn admit(&self) -> bool {
         let limits = self.table.limits;
-        let mut inner = self.table.lock();
+        let mut inner = lock(&self.table.inner);
         let is_admitted = |entry: &&ConnectionEntry| entry.standing == ConnectionStanding::Admitted;
         let others = inner.entries.iter().filter(is_admitted).filter(|entry| entry.number != self.number);
         let of_address = others.clone().filter(|entry| entry.address == self.address).count();
@@ -172,7 +170,7 @@ impl ConnectionHandle {
     }
 
     fn change(&self, change: impl FnOnce(&mut ConnectionEntry)) {
-        let mut inner = self.table.lock();
+        let mut inner = lock(&self.table.inner);
         if let Some(entry) = inner.entries.iter_mut().find(|entry| entry.number == self.number) {
             change(entry);
         }
@@ -181,7 +179,7 @@ impl ConnectionHandle {
 
 impl Drop for ConnectionHandle {
     fn drop(&mut self) {
-        self.table.lock().entries.retain(|entry| entry.number != self.number);
+        lock(&self.table.inner).entries.retain(|entry| entry.number != self.number);
     }
 }
 

@@ -6,12 +6,13 @@
 
 use std::io;
 use std::path::Path;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant, SystemTime};
 
 use super::child_process::ChildProcess;
 use super::ffmpeg::{self, FfmpegMessage};
+use crate::lock;
 
 /// Time after which a camera without a new picture counts as lost; cameras take some seconds to open.
 const SILENT: Duration = Duration::from_secs(5);
@@ -128,8 +129,4 @@ impl Heard {
             FfmpegMessage::Fault(words) => self.fault = Some(words),
         }
     }
-}
-
-fn lock(heard: &Mutex<Heard>) -> std::sync::MutexGuard<'_, Heard> {
-    heard.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -5,7 +5,7 @@
 
 use std::io;
 use std::net::SocketAddr;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use tokio::io::AsyncWriteExt;
@@ -19,6 +19,7 @@ use super::gaze_gate::{GazeAccessCheck, GazeAdmission, RejectionReporter};
 use super::gaze_input::{GazeSenderRejection, TrackerMessage};
 use super::gaze_line::{begins_object, code_in, long_line_fault, opening_fault, parse};
 use super::sender_clock::SenderClock;
+use crate::lock;
 
 /// Longest line of a gaze connection, in bytes.
 const MAX_LINE: usize = 4096;
@@ -67,11 +68,6 @@ pub(super) async fn attend(sender: GazeConnection) {
         // Nothing is wrong with the stamps of the next sender, as far as is known.
         let _ = sender.news.send(TrackerMessage::Stamps(None)).await;
     }
-}
-
-/// Locks the shared access check, which stays usable after a panic in another thread.
-pub(super) fn lock(gate: &SharedGate) -> std::sync::MutexGuard<'_, GazeAccessCheck> {
-    gate.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Content of one line of a gaze connection.

@@ -4,7 +4,7 @@
 use std::collections::VecDeque;
 use std::mem::discriminant;
 use std::net::{IpAddr, SocketAddr};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use tokio::sync::mpsc::Sender;
@@ -12,6 +12,7 @@ use tokio::sync::mpsc::Sender;
 use super::gaze_input::{GazeSenderRejection, TrackerMessage};
 use super::gaze_line::code_in;
 use super::pairing::{PairingCodeCheck, PairingVerdict};
+use crate::lock;
 
 /// Number of paired senders of datagrams that are remembered.
 const MAX_PAIRED: usize = 64;
@@ -148,7 +149,7 @@ impl RejectionReporter {
     /// by their address, with port 0; datagrams count by address and port.
     pub fn report(&self, from: SocketAddr, why: GazeSenderRejection, now: Instant) {
         let from = SocketAddr::new(from.ip().to_canonical(), from.port());
-        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut known = lock(&self.known);
         match known.senders.iter_mut().find(|(sender, ..)| *sender == from) {
             Some((_, before, told)) => {
                 let is_same = discriminant(before) == discriminant(&why);

@@ -17,13 +17,14 @@ use tokio::time::sleep;
 
 use super::arrival::{Arrival, ArrivalWatch};
 use super::connection_table::{ConnectionLimits, ConnectionTable};
-use super::gaze_connection::{GazeConnection, SharedGate, attend, lock};
+use super::gaze_connection::{GazeConnection, SharedGate, attend};
 use super::gaze_gate::{GazeAccessCheck, GazeAdmission, RejectionReporter};
 use super::gaze_input::{GazeSenderRejection, TrackerMessage, WAITING};
 use super::gaze_line::{begins_object, opening_fault, parse};
 use super::outer_address::reachable;
 use super::pairing::pairing_code;
 use super::sender_clock::SenderClock;
+use crate::lock;
 use tomcom_session::settings::GazeSenders;
 
 /// Longest datagram of gaze, in bytes; a datagram can contain several lines.

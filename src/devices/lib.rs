@@ -50,3 +50,10 @@ pub mod stream_head;
 pub mod ur;
 #[cfg(feature = "rerun")]
 pub mod viewer;
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Locks a mutex, which stays usable after a panic of another thread.
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

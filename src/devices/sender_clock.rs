@@ -34,8 +34,7 @@ impl SenderClock {
             ClockNews::Set(ClockStep { by_ns, uncertain_since }) => {
                 TrackerMessage::ClockSet { by_s: by_ns as f64 / 1e9, known_at: self.instant(uncertain_since) }
             }
-            ClockNews::Faulty(fault) => TrackerMessage::Stamps(Some(fault)),
-            ClockNews::Sound => TrackerMessage::Stamps(None),
+            ClockNews::Stamps(verdict) => TrackerMessage::Stamps(verdict.err()),
         })
     }
 

@@ -40,9 +40,7 @@ pub(super) enum LoopEvent {
     Terminal(ConsoleMessage),
     EngineDue,
     TargetDue,
-    /// An input from the participant's page.
     Page(PageInput),
-    /// News of a real arm.
     Arm(ArmNews),
     ButtonBox(ButtonBoxMessage),
     Advice(AssistantNews),
@@ -193,8 +191,8 @@ async fn next_event<S: ConsoleShell>(shell: &mut S, station: &mut OperatorStatio
     tokio::select! {
         biased;
         event = station.input.next() => event,
-        () = until(due.engine) => LoopEvent::EngineDue,
-        () = until(due.target) => LoopEvent::TargetDue,
+        () = or_never(due.engine.map(sleep_until)) => LoopEvent::EngineDue,
+        () = or_never(due.target.map(sleep_until)) => LoopEvent::TargetDue,
         Some(input) = station.display.next() => LoopEvent::Page(input),
         Some(news) = station.arm.next() => LoopEvent::Arm(news),
         Some(message) = station.button_box.next() => LoopEvent::ButtonBox(message),
@@ -204,14 +202,15 @@ async fn next_event<S: ConsoleShell>(shell: &mut S, station: &mut OperatorStatio
         _ = ticks.files.tick() => LoopEvent::FileTick,
         _ = ticks.watch.tick() => LoopEvent::WatchTick,
         () = sleep_until(frame) => LoopEvent::FrameDue,
-        () = until(due.file_gaze) => LoopEvent::FileGazeDue,
+        () = or_never(due.file_gaze.map(sleep_until)) => LoopEvent::FileGazeDue,
         Some(news) = station.tracker.next() => LoopEvent::Gaze(news),
     }
 }
 
-async fn until(due: Option<Instant>) {
-    match due {
-        Some(due) => sleep_until(due).await,
+/// Waits for this; waits forever if there is nothing to wait for.
+pub(super) async fn or_never<T>(next: Option<impl Future<Output = T>>) -> T {
+    match next {
+        Some(next) => next.await,
         None => std::future::pending().await,
     }
 }

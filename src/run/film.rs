@@ -321,7 +321,7 @@ fn align_by_pupil(
     told: &mut impl FnMut(),
 ) -> Result<(), FilmError> {
     let mut times_s = Vec::new();
-    decode(&film.canonicalize().unwrap_or_else(|_| film.to_path_buf()), |time_s, _| {
+    decode(&film.canonicalize().unwrap_or_else(|_| film.to_path_buf()), None, |time_s, _| {
         times_s.push(time_s);
         if times_s.len() % 30 == 0 {
             told();
@@ -408,9 +408,9 @@ fn convert(film: &Path, folder: &Path) -> Result<(PathBuf, f64), FilmError> {
 /// When a film has its first picture, in seconds.
 fn first_picture_s(film: &Path) -> Result<f64, FilmError> {
     let mut first = None;
-    decode_some(film, Some(1), |time_s, _| first = first.or(Some(time_s)))?;
-    let reason = || "there are no pictures in it".to_string();
-    first.ok_or_else(|| FilmError::Undecodable { film: film.to_path_buf(), reason: reason() })
+    decode(film, Some(1), |time_s, _| first = first.or(Some(time_s)))?;
+    let reason = "there are no pictures in it".to_string();
+    first.ok_or_else(|| FilmError::Undecodable { film: film.to_path_buf(), reason })
 }
 
 /// A film's path, as ffmpeg takes it for nothing else.
@@ -442,9 +442,7 @@ pub fn describe(film: &AttachedFilm) -> String {
 fn copy(film: &Path, folder: &Path) -> FileResult<PathBuf> {
     let name = PathBuf::from(film.file_name().unwrap_or_default());
     let to = folder.join(&name);
-    let unwritable = |reason| FileError::unwritable(&to, reason);
-    let is_there = fs::symlink_metadata(&to).is_ok();
-    if is_there {
+    if fs::symlink_metadata(&to).is_ok() {
         if is_same(film, &to) || digest(&to).ok().is_some_and(|there| digest(film).is_ok_and(|new| new == there)) {
             return Ok(name);
         }
@@ -456,7 +454,7 @@ fn copy(film: &Path, folder: &Path) -> FileResult<PathBuf> {
         io::copy(&mut File::open(film)?, &mut new)?;
         new.finish()
     };
-    write().map_err(unwritable)?;
+    write().map_err(|reason| FileError::unwritable(&to, reason))?;
     Ok(name)
 }
 
@@ -512,7 +510,7 @@ fn refused(film: &Path, recorded: &RecordedTimes, search: &FlashSearch, refusal:
 fn search(film: &Path, told: &mut impl FnMut()) -> Result<FlashSearch, FilmError> {
     let mut search = FlashSearch::default();
     let mut second = f64::NEG_INFINITY;
-    decode(film, |time_s, pixels| {
+    decode(film, None, |time_s, pixels| {
         search.take(time_s, pixels);
         if time_s >= second + 1.0 {
             second = time_s;
@@ -523,13 +521,8 @@ fn search(film: &Path, told: &mut impl FnMut()) -> Result<FlashSearch, FilmError
 }
 
 /// Decodes the first picture track of a film into gray frames of [`SIZE`], with their times as players count them: from
-/// the beginning of the film, in seconds.
-fn decode(film: &Path, each: impl FnMut(f64, &[u8])) -> Result<(), FilmError> {
-    decode_some(film, None, each)
-}
-
-/// Decodes the first frames, or all.
-fn decode_some(film: &Path, most: Option<u32>, mut each: impl FnMut(f64, &[u8])) -> Result<(), FilmError> {
+/// the beginning of the film, in seconds. `most`: number of the first frames to decode; `None` for all.
+fn decode(film: &Path, most: Option<u32>, mut each: impl FnMut(f64, &[u8])) -> Result<(), FilmError> {
     let (width, height) = SIZE;
     // Frames get numbers as times after their own time was told, so that none is doubled or left out for a steady rate.
     let times = ffmpeg::TELLS_TIMES;

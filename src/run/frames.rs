@@ -40,9 +40,6 @@ pub(super) struct FrameWriter {
 
 impl FrameWriter {
     /// Starts the thread that writes frames to the terminal.
-    ///
-    /// # Errors
-    /// The thread cannot be started.
     pub(super) fn start() -> io::Result<Arc<FrameWriter>> {
         let writer = Arc::new(FrameWriter { pending: Mutex::default(), changed: Condvar::new() });
         let own = writer.clone();
@@ -127,9 +124,6 @@ impl FrameWriter {
 }
 
 /// Runs a write on a separate thread, and waits for it until a time limit; a write that takes longer counts as done.
-///
-/// # Errors
-/// The write fails within the time limit, or the thread cannot be started.
 pub(super) fn write_within(
     longest: Duration,
     write: impl FnOnce() -> io::Result<()> + Send + 'static,

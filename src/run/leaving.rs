@@ -64,7 +64,6 @@ pub struct LiveOutcome {
 }
 
 impl LiveOutcome {
-    /// The result of the live session as text.
     pub fn describe(&self) -> String {
         let Some(folder) = &self.folder else { return "nothing was recorded: no trial was begun".to_string() };
         // A further part has the absolute path of its recording.

@@ -23,6 +23,8 @@ pub mod leaving;
 pub mod list_cache;
 pub mod live;
 mod mind_link;
+#[cfg(not(all(feature = "display", feature = "rerun", feature = "ur")))]
+mod missing_features;
 #[cfg(feature = "rerun")]
 pub mod open_viewer;
 mod operator_station;

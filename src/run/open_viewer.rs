@@ -407,6 +407,7 @@ pub fn unshown_films(recordings: &[PathBuf]) -> FileResult<Vec<String>> {
 /// An error, a signal, a note or a false belief of a recording, as the viewer shows it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RecordedLandmark {
+    pub kind: ReplayLandmark,
     pub words: String,
     /// On the trial's clock.
     pub from: SessionTime,
@@ -424,9 +425,9 @@ pub fn landmarks(recording: &Path, kinds: &[ReplayLandmark]) -> FileResult<Vec<R
     let (follower, session) = (&replay.follower, replay.session());
     let kitchen = &session.kitchen;
     let mut found: Vec<RecordedLandmark> = Vec::new();
-    let mut add = |began: SessionTime, ended: Option<SessionTime>, words: String| {
+    let mut add = |kind: ReplayLandmark, began: SessionTime, ended: Option<SessionTime>, words: String| {
         let from = session.trial_clock_at(began);
-        found.push(RecordedLandmark { words, from, until: ended.map(|ended| session.trial_clock_at(ended)) });
+        found.push(RecordedLandmark { kind, words, from, until: ended.map(|ended| session.trial_clock_at(ended)) });
     };
     if kinds.contains(&ReplayLandmark::Error) {
         let codes =
@@ -436,22 +437,22 @@ pub fn landmarks(recording: &Path, kinds: &[ReplayLandmark]) -> FileResult<Vec<R
         for ((number, (nth, press)), error) in (1..).zip(errors).zip(explained) {
             let coded = codes.iter().filter_map(|(rater, codes)| Some((rater, codes.0.get(&press.seq)?)));
             let coded: String = coded.map(|(rater, code)| format!("; {rater}: {}", wording::code(code))).collect();
-            let told = error.told(follower.false_beliefs.told_before(session, press.time, press.before));
+            let told = error.told(follower.believed_wrong(press.time, press.before));
             let words = format!("error {number}: {told}{coded}");
-            add(press.time, follower.judged_until(nth), words);
+            add(ReplayLandmark::Error, press.time, follower.judged_until(nth), words);
         }
     }
     if kinds.contains(&ReplayLandmark::Signal) {
         let verdicts = signal_verdicts(follower);
         for (nth, shown) in follower.signals.shown.iter().enumerate() {
             let told = signal_words::told(follower, verdicts.as_deref(), nth);
-            add(shown.time, shown.ended, format!("signal {}: {told}", nth + 1));
+            add(ReplayLandmark::Signal, shown.time, shown.ended, format!("signal {}: {told}", nth + 1));
         }
     }
     if kinds.contains(&ReplayLandmark::Marker) {
         let notes = session.timeline.iter().filter_map(|entry| Some((entry.time, event_words::note(&entry.what)?)));
         for (number, (time, note)) in (1..).zip(notes) {
-            add(time, Some(time), format!("note {number}: {}", printable(&note)));
+            add(ReplayLandmark::Marker, time, Some(time), format!("note {number}: {}", printable(&note)));
         }
     }
     if kinds.contains(&ReplayLandmark::FalseBelief) {
@@ -460,8 +461,8 @@ pub fn landmarks(recording: &Path, kinds: &[ReplayLandmark]) -> FileResult<Vec<R
         for held in follower.false_beliefs.all() {
             let number = held.lasts(session).then(|| numbers.next()).flatten();
             let number = number.map_or_else(String::new, |number| format!(" {number}"));
-            let name = ReplayLandmark::FalseBelief.name();
-            add(held.began, held.ended, format!("{name}{number}: {}", held.whole(session)));
+            let (kind, name) = (ReplayLandmark::FalseBelief, ReplayLandmark::FalseBelief.name());
+            add(kind, held.began, held.ended, format!("{name}{number}: {}", held.whole(session)));
         }
     }
     found.sort_by_key(|one| one.from);

@@ -24,7 +24,7 @@ use tomcom_core::kitchen::Kitchen;
 use tomcom_devices::gaze_file::{self, GazeFile};
 use tomcom_devices::gaze_input::TrackerMessage;
 use tomcom_devices::gaze_json;
-use tomcom_devices::lsl::{self, InletThreadGuard, LslError};
+use tomcom_devices::lsl::{self, LslError, LslThreadGuard};
 use tomcom_devices::pupil::{self, CaptureConfiguration, CaptureRequest};
 use tomcom_session::SessionSpec;
 use tomcom_session::gaze_check::AcceptedGazeCheck;
@@ -37,30 +37,27 @@ const CONTINUED: Duration = Duration::from_millis(200);
 /// Longest wait for the program Pupil Capture to finish its last request.
 const LAST_REQUEST: Duration = Duration::from_secs(2);
 
+mod lsl_output;
 #[cfg(feature = "ur")]
 mod station_arm;
-#[cfg(not(feature = "ur"))]
-#[path = "operator_station/without_arm.rs"]
-mod station_arm;
+mod station_button_box;
 #[cfg(feature = "display")]
-mod station_display;
-#[cfg(not(feature = "display"))]
-#[path = "operator_station/without_display.rs"]
 mod station_display;
 #[cfg(feature = "display")]
 mod station_observers;
 
-mod lsl_output;
-mod station_button_box;
-
-use lsl_output::LslOutput;
-use station_arm::StationArm;
-pub(super) use station_arm::{ArmNews, ArmOrders};
-use station_button_box::StationButtonBox;
-use station_display::StationDisplay;
-pub(super) use station_display::{PageInput, lost_since, take_consent_input};
+#[cfg(not(feature = "ur"))]
+pub(super) use super::missing_features::arm::{ArmNews, ArmOrders, StationArm};
 #[cfg(not(feature = "display"))]
-pub(super) use station_display::{Remark, StationObservers};
+pub(super) use super::missing_features::display::{
+    PageInput, Remark, StationDisplay, StationObservers, lost_since, take_consent_input,
+};
+use lsl_output::LslOutput;
+#[cfg(feature = "ur")]
+pub(super) use station_arm::{ArmNews, ArmOrders, StationArm};
+use station_button_box::StationButtonBox;
+#[cfg(feature = "display")]
+pub(super) use station_display::{PageInput, StationDisplay, lost_since, take_consent_input};
 #[cfg(feature = "display")]
 pub(super) use station_observers::{Remark, StationObservers};
 
@@ -91,12 +88,14 @@ pub(super) struct OperatorInput {
 #[derive(Default)]
 pub(super) struct GazeTracker {
     news: Option<Receiver<TrackerMessage>>,
-    orders: Option<Sender<CaptureRequest>>,
+    /// Channel for requests to the program Pupil Capture; `None` if it is not the tracker.
+    pub orders: Option<Sender<CaptureRequest>>,
     /// End of the thread that reads gaze from the Lab Streaming Layer; the station waits for it once `news` is dropped.
-    _inlet: Option<InletThreadGuard>,
-    file: Option<Arc<GazeFile>>,
+    _inlet: Option<LslThreadGuard>,
+    /// The file from which gaze is replayed; `None` if gaze comes from another source.
+    pub file: Option<Arc<GazeFile>>,
     /// Pairing codes for gaze senders at other computers; `None` if senders need no pairing.
-    pairing: Option<GazePairing>,
+    pub pairing: Option<GazePairing>,
     /// Latest connection state of the tracker, which recordings that begin later are told.
     link: Option<TrackerMessage>,
     sees_display: Option<TrackerMessage>,
@@ -104,17 +103,7 @@ pub(super) struct GazeTracker {
     several_streams: Option<TrackerMessage>,
     stamps: Option<TrackerMessage>,
     /// Last gaze accuracy check that the wizard accepted.
-    calibrated: Option<AcceptedGazeCheck>,
-}
-
-impl GazeTracker {
-    pub fn keep(&mut self, calibrated: Option<AcceptedGazeCheck>) {
-        self.calibrated = calibrated;
-    }
-
-    pub fn calibrated(&self) -> Option<&AcceptedGazeCheck> {
-        self.calibrated.as_ref()
-    }
+    pub calibrated: Option<AcceptedGazeCheck>,
 }
 
 impl OperatorStation {
@@ -161,12 +150,11 @@ impl OperatorStation {
     /// # Errors
     /// The terminal's size is unknown.
     pub fn draw(&mut self, view: &ShellView<'_>) -> Result<(), TerminalError> {
-        let (drawn, theme) = match *view {
-            ShellView::Console(session, model) => (self.screen.draw(session, model), model.theme),
-            ShellView::Question(question, notice, theme) => (self.screen.ask(question, notice, theme), theme),
-            ShellView::Recordings(picker, theme) => (self.screen.list(picker, theme), theme),
-        };
-        if let Some(drawn) = drawn.map_err(TerminalError)? {
+        if let Some(drawn) = self.screen.draw(view).map_err(TerminalError)? {
+            let theme = match *view {
+                ShellView::Console(_, model) => model.theme,
+                ShellView::Question(.., theme) | ShellView::Recordings(_, theme) => theme,
+            };
             self.observers.show(&drawn, theme);
         }
         Ok(())
@@ -235,7 +223,7 @@ impl GazeTracker {
             GazeSource::Lsl => {
                 let stream = spec.lsl.as_ref().and_then(|spec| spec.gaze.clone());
                 // The settings were checked, so both the LSL library and the stream's settings exist.
-                let Some((library, stream)) = lsl.library().zip(stream) else { return Ok(GazeTracker::default()) };
+                let Some((library, stream)) = lsl.library.zip(stream) else { return Ok(GazeTracker::default()) };
                 let followed = lsl::follow(library, stream, kitchen.display_m);
                 let (news, inlet) = followed.map_err(|_| LslError::NoThread)?;
                 Ok(GazeTracker { news: Some(news), _inlet: Some(inlet), ..GazeTracker::default() })
@@ -272,23 +260,7 @@ impl GazeTracker {
     /// Messages with the tracker's present state, for a recording that begins now.
     pub fn known(&self) -> impl Iterator<Item = TrackerMessage> {
         let known = self.link.iter().chain(&self.sees_display).chain(&self.other_surfaces);
-        let known = known.chain(&self.several_streams).chain(&self.stamps);
-        known.cloned().collect::<Vec<_>>().into_iter()
-    }
-
-    /// Pairing codes for gaze senders at other computers; `None` if senders need no pairing.
-    pub fn pairing(&self) -> Option<GazePairing> {
-        self.pairing.clone()
-    }
-
-    /// The file from which gaze is replayed; `None` if gaze comes from another source.
-    pub fn file(&self) -> Option<Arc<GazeFile>> {
-        self.file.clone()
-    }
-
-    /// Channel for requests to the program Pupil Capture; `None` if it is not the tracker.
-    pub fn orders(&self) -> Option<Sender<CaptureRequest>> {
-        self.orders.clone()
+        known.chain(&self.several_streams).chain(&self.stamps).cloned()
     }
 
     /// Waits briefly until the program Pupil Capture has finished its requests.

@@ -3,7 +3,7 @@
 use super::error::ReviewError;
 use super::seekable_replay::SeekableReplay;
 use crate::console::coding::{CodingRaters, RaterSession};
-use tomcom_core::measures::raters::{CodableErrors, RaterCodes, RaterConsensus, unsettled};
+use tomcom_core::measures::raters::{CodableErrors, RaterCodes, RaterConsensus};
 use tomcom_session::error_list::ListedError;
 use tomcom_session::files::file_error::FileError;
 use tomcom_session::log::{RecordingWriteError, consensus_file, rater_codes};
@@ -30,8 +30,7 @@ pub(super) fn of_rater(film: &SeekableReplay, rater: &str) -> Result<RaterSessio
     Ok(session)
 }
 
-/// The session of two raters who settle the errors that they coded differently. Codes on which the raters agree become
-/// consensus codes.
+/// The session of two raters who settle their disagreements. Codes on which the raters agree become consensus codes.
 ///
 /// # Errors
 /// A rater has coded nothing, other raters have settled this recording, a file is damaged, or the folder cannot be
@@ -50,7 +49,7 @@ pub(super) fn of_pair(film: &SeekableReplay, raters: [&str; 2]) -> Result<RaterS
     }
     let own = new.raters.clone().map(|rater| all.remove(&rater).unwrap_or_default());
     let mut consensus = before.unwrap_or(new).with_agreed(own.each_ref());
-    let open = unsettled(&codable.errors, own.each_ref());
+    let open = own[0].disagreements(&own[1]);
     let errors: Vec<ListedError> =
         ListedError::all(follower).into_iter().filter(|error| open.contains(&error.press)).collect();
     let current = consensus.current(own.each_ref()).0.into_iter();

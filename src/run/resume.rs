@@ -52,25 +52,12 @@ pub enum ResumeError {
     },
 }
 
-/// A session that continues a recording after its cut.
-#[derive(Debug)]
-pub struct ResumedSession {
-    pub engine: SessionEngine,
-    /// First events of the new part: events lost by the cut, and the pause of a running trial.
-    pub first: Vec<TimestampedEvent>,
-    pub header: LogHeader,
-    pub time: SessionTime,
-    pub folder: PathBuf,
-    /// Lock that keeps other programs from the previous part.
-    pub lock: RecordingLock,
-}
-
 /// Runs the session of a cut recording, or of one that ended early, again up to there. A running trial, or a freeze
 /// probe in it, is paused until the participant is back.
 ///
 /// # Errors
 /// The recording cannot be read, is being written, has everything in it, or cannot be verified.
-pub fn resume(recording: &Path) -> Result<ResumedSession, ResumeError> {
+pub fn resume(recording: &Path) -> Result<PreparedSession, ResumeError> {
     // The path is made absolute, since the new part is created beside the recording and refers to it by name.
     let there = recording.canonicalize();
     let there = there.map_err(|reason| FileError::unreadable(recording, reason, "the folder of a cut recording"))?;
@@ -102,14 +89,15 @@ pub fn resume(recording: &Path) -> Result<ResumedSession, ResumeError> {
     header.keys = old.keys;
     // All parts of a recording have the same version of the format.
     header.version = old.version;
-    Ok(ResumedSession { engine: again.engine, first, header, time, folder, lock })
+    let begins = PreparedSession::begins(again.engine, header, RecordingPlace::After(folder, lock));
+    Ok(PreparedSession { first, time, ..begins })
 }
 
 /// A session that is prepared to be run and recorded.
-pub(super) struct PreparedSession {
+pub struct PreparedSession {
     pub engine: SessionEngine,
     pub header: LogHeader,
-    /// First events of the new recording, which exist before the session runs.
+    /// First events of a new part, which exist before it runs: those lost by the cut, and the pause of a running trial.
     pub first: Vec<TimestampedEvent>,
     /// The participant's consent, if it was asked for just before the session.
     pub consent: Option<ProtocolEvent>,
@@ -125,8 +113,9 @@ pub(super) struct PreparedSession {
 }
 
 /// In which folder the recording's folder is created.
-pub(super) enum RecordingPlace {
+pub enum RecordingPlace {
     In(PathBuf),
+    /// Beside the previous part, whose lock keeps other programs from it.
     After(PathBuf, RecordingLock),
 }
 
@@ -135,34 +124,32 @@ impl PreparedSession {
     ///
     /// # Errors
     /// The recording that shall be continued cannot be continued.
-    pub fn new(beginning: SessionStart) -> Result<PreparedSession, LiveError> {
-        match beginning {
+    pub fn new(
+        beginning: SessionStart,
+        compare: Option<SenderComparisonSettings>,
+    ) -> Result<PreparedSession, LiveError> {
+        let begins = match beginning {
             SessionStart::New { files, trial, out } => {
                 let kitchen = Arc::new(files.kitchen.kitchen);
                 let spec = files.spec;
                 let mut header = LogHeader::new(spec.clone(), trial, files.kitchen.layout, files.kitchen.recipes);
                 header.keys = files.keys;
-                let engine = SessionEngine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen)).without_causes();
-                Ok(PreparedSession::begins(engine, header, RecordingPlace::In(out)))
+                let engine = SessionEngine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen));
+                PreparedSession::begins(engine, header, RecordingPlace::In(out))
             }
             SessionStart::Again { header, kitchen, out } => {
-                let engine =
-                    SessionEngine::for_header(kitchen.clone(), &header, CostToGo::new(kitchen)).without_causes();
-                Ok(PreparedSession::begins(engine, *header, RecordingPlace::In(out)))
+                let engine = SessionEngine::for_header(kitchen.clone(), &header, CostToGo::new(kitchen));
+                PreparedSession::begins(engine, *header, RecordingPlace::In(out))
             }
-            SessionStart::Continued(recording) => {
-                let resumed = resume(&recording)?;
-                let place = RecordingPlace::After(resumed.folder, resumed.lock);
-                let begins = PreparedSession::begins(resumed.engine.without_causes(), resumed.header, place);
-                Ok(PreparedSession { first: resumed.first, time: resumed.time, ..begins })
-            }
-        }
+            SessionStart::Continued(recording) => resume(&recording)?,
+        };
+        Ok(PreparedSession { compare, ..begins })
     }
 
     /// A session from its first moment, with nothing beside it.
     fn begins(engine: SessionEngine, header: LogHeader, place: RecordingPlace) -> PreparedSession {
         PreparedSession {
-            engine,
+            engine: engine.without_causes(),
             header,
             first: Vec::new(),
             consent: None,
@@ -172,18 +159,6 @@ impl PreparedSession {
             participants_done: None,
             is_last: false,
         }
-    }
-
-    pub fn with_consent(self, consent: Option<ProtocolEvent>) -> PreparedSession {
-        PreparedSession { consent, ..self }
-    }
-
-    pub fn in_study(self, participants_done: (usize, usize), is_last: bool) -> PreparedSession {
-        PreparedSession { participants_done: Some(participants_done), is_last, ..self }
-    }
-
-    pub fn comparing(self, compare: Option<SenderComparisonSettings>) -> PreparedSession {
-        PreparedSession { compare, ..self }
     }
 
     pub fn kitchen(&self) -> &Kitchen {

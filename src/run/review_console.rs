@@ -13,7 +13,7 @@ use super::operator_station::OperatorStation;
 use super::rater_files;
 use super::seekable_replay::SeekableReplay;
 use crate::console::coding::RaterSession;
-use crate::console::console_model::{NoticeLevel, Playback, ReplayAction, SPEEDS, SenderComparisonView};
+use crate::console::console_model::{Dialog, NoticeLevel, Playback, ReplayAction, SPEEDS, SenderComparisonView};
 use crate::console::key_action::KeyAction;
 use crate::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, update};
 use crate::run::key_file::key_map;
@@ -247,7 +247,7 @@ impl Review {
         }
     }
 
-    /// Marks errors, signals and false beliefs on the bar of the recording; for raters, errors only.
+    /// Marks errors, signals, false beliefs and notes on the bar of the recording; for raters, errors only.
     fn mark(&mut self) {
         let read = self.film.read_events();
         if self.marked == read {
@@ -255,14 +255,24 @@ impl Review {
         }
         self.marked = read;
         // Where two marks meet, the later one of this list is seen.
-        let all = [ReplayLandmark::FalseBelief, ReplayLandmark::Error, ReplayLandmark::Signal];
-        let shown = if self.model.coding.is_some() { &[ReplayLandmark::Error][..] } else { &all[..] };
+        use ReplayLandmark::{Error, FalseBelief, Marker, Signal};
+        let all = [FalseBelief, Error, Signal, Marker];
+        let shown = if self.model.coding.is_some() { &[Error][..] } else { &all[..] };
         let session = self.film.replay.session();
         let times = |&what: &ReplayLandmark| {
             self.film.landmarks(what).into_iter().map(move |time| (session.trial_clock_at(time), what))
         };
         let marks: Vec<(SessionTime, ReplayLandmark)> = shown.iter().flat_map(times).collect();
         self.playback(|playback| playback.marks = marks.into());
+    }
+
+    /// Lists the events in words for the palette as long as it is open.
+    fn list_events(&mut self) {
+        let is_open = matches!(self.model.dialog, Some(Dialog::Palette(_)));
+        if is_open == self.is(|playback| playback.told.is_empty()) {
+            let told = if is_open { self.film.told_events() } else { Vec::new() };
+            self.playback(|playback| playback.told = told.into());
+        }
     }
 
     /// Lets the films follow the replay.
@@ -387,6 +397,7 @@ impl ConsoleShell for Review {
         let first = self.players.first().filter(|_| !self.players.iter().any(has_moment));
         let outside_film = first.and_then(|player| player.film.outside(self.now));
         self.mark();
+        self.list_events();
         self.playback(|playback| {
             *playback = Playback { trial_length, event, events, cut, outside_film, ..playback.clone() };
         });

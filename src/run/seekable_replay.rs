@@ -8,7 +8,9 @@
 use std::ops::Range;
 use std::path::Path;
 
+use crate::console::console_model::ReplayAction;
 use tomcom_core::base::time::SessionTime;
+use tomcom_core::kitchen::Agent;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::history::belief_track::{BeliefHistory, BeliefSnapshot};
@@ -20,7 +22,7 @@ use tomcom_session::replay::RecordingReplay;
 use tomcom_session::replay::ReplayLandmark;
 use tomcom_session::settings::WizardVisibility;
 use tomcom_session::wizard_log::signal_verdicts;
-use tomcom_session::{Event, Session, TimelineEntry, TimestampedEvent, TrialPhase, apply};
+use tomcom_session::{Event, Session, TimelineEntry, TimelineEvent, TimestampedEvent, TrialPhase, apply};
 use tomcom_study::analysis::recording_summary::ExclusionStatus;
 use tomcom_study::standing::exclusion_status;
 
@@ -420,8 +422,28 @@ impl SeekableReplay {
         let last = self.position.checked_sub(1).filter(|_| !self.is_blinded)?;
         let within = self.load(last)?;
         let stamped = &self.loaded.as_ref()?.1[within];
-        let words = event_words::words(stamped, &self.replay.follower);
-        Some(words.unwrap_or_else(|| stamped.event.kind().replace('_', " ")))
+        Some(event_words::step_words(stamped, &self.replay.follower))
+    }
+
+    /// The events of the list of events in words, with the trial's clock and of errors the reason, as far as the recording
+    /// was read, each with the action that goes there; none for raters, who would read signals.
+    pub fn told_events(&self) -> Vec<(ReplayAction, String)> {
+        let session = self.replay.session();
+        let told = |entry: &TimelineEntry| {
+            let (who, what) = event_words::happening(&session.kitchen, &entry.what);
+            let is_human = matches!(entry.what, TimelineEvent::Press { agent: Agent::Human, .. });
+            let error = self.errors.binary_search_by_key(&entry.time, |error| error.time).ok().filter(|_| is_human);
+            let (to, why) = match error {
+                Some(index) => {
+                    let number = index + 1;
+                    (ReplayAction::ToNth(ReplayLandmark::Error, number), format!("; {}", self.errors[index].why))
+                }
+                None => (ReplayAction::ToTime(entry.time), String::new()),
+            };
+            let clock = session.trial_clock_at(entry.time).with_tenths();
+            (to, format!("{clock:>7}  {who}{}{what}{why}", if who.is_empty() { "" } else { " " }))
+        };
+        if self.is_blinded { Vec::new() } else { session.timeline.iter().map(told).collect() }
     }
 
     /// What the landmark of this kind is at which the replay stands.
@@ -433,7 +455,7 @@ impl SeekableReplay {
                 if self.is_blinded {
                     return Some(format!("{}: {}", error.press, error.why));
                 }
-                Some(error.told(self.replay.follower.false_beliefs.told_before(session, now, error.before)))
+                Some(error.told(self.replay.follower.believed_wrong(now, error.before)))
             }
             ReplayLandmark::Signal => {
                 let follower = &self.replay.follower;

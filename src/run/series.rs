@@ -47,7 +47,7 @@ pub fn operate(
     in_runtime(async {
         // The session's start is checked before the terminal is taken over and a recording is created, so that a
         // session that cannot start leaves nothing behind.
-        let mut begun = PreparedSession::new(beginning)?.comparing(compare.clone());
+        let mut begun = PreparedSession::new(beginning, compare.clone())?;
         let mut station = OperatorStation::take(begun.spec(), begun.kitchen(), observe).await?;
         let mut done = Vec::new();
         loop {
@@ -55,7 +55,7 @@ pub fn operate(
             let again = end.again.take();
             done.push(end);
             match again {
-                Some(again) => begun = PreparedSession::new(again)?.comparing(compare.clone()),
+                Some(again) => begun = PreparedSession::new(again, compare.clone())?,
                 None => return Ok(SeriesOutcome { done, remark: None }),
             }
         }
@@ -67,7 +67,11 @@ pub fn operate(
 /// # Errors
 /// The errors of [`operate`]; or recordings cannot be read or do not fit the plan.
 pub fn operate_series(series: SeriesRequest) -> Result<SeriesOutcome, LiveError> {
-    in_runtime(async { Planned::new(series)?.run().await })
+    in_runtime(async {
+        let (planned, mut done) = (Planned::new(series)?, Vec::new());
+        let remark = planned.run(&mut done).await?;
+        Ok(SeriesOutcome { done, remark: Some(remark) })
+    })
 }
 
 /// The right to record the participant of a plan's recording that is continued; `None` for a recording of no plan, and
@@ -171,26 +175,26 @@ impl Planned {
         ))
     }
 
-    async fn run(self) -> Result<SeriesOutcome, LiveError> {
+    /// Makes recordings until nothing is left or the wizard leaves; returns what is said then.
+    async fn run(&self, done: &mut Vec<LiveOutcome>) -> Result<String, LiveError> {
         let code = self.study.plan.code(self.series.participant);
         // Until the series is over, no other program can begin a recording of the participant.
         let _lock = RecordingLock::take_for_participant(&self.series.out, &self.study.plan.name, &code)?;
-        let mut done = Vec::new();
         let (mut progress, mut participants) = self.progress()?;
         if progress.next == NextRecording::Finished && progress.excluded().next().is_none() {
-            return Ok(SeriesOutcome { done, remark: Some(self.stands(&progress)) });
+            return Ok(self.stands(&progress));
         }
         let SeriesRequest { files, observe, .. } = &self.series;
         let mut station = OperatorStation::take(&files.spec, &files.kitchen.kitchen, *observe).await?;
         if self.series.files.spec.participant.kind == ParticipantKind::Simulated
             && ask(&mut station, rehearsal(&progress, &self.series.out)).await? != Some(0)
         {
-            return Ok(SeriesOutcome { done, remark: Some(self.stands(&progress)) });
+            return Ok(self.stands(&progress));
         }
         let (made, _) = recordings_of(&self.study, &self.series.out)?;
         for question in [self.changed(&made, &code)?, self.other_kind(&made, &code)].into_iter().flatten() {
             if ask(&mut station, question).await? != Some(0) {
-                return Ok(SeriesOutcome { done, remark: Some(self.stands(&progress)) });
+                return Ok(self.stands(&progress));
             }
         }
         let excluded: Vec<usize> = progress.excluded().map(|(slot, _)| slot).collect();
@@ -198,17 +202,15 @@ impl Planned {
             match ask(&mut station, repeat(&progress)).await? {
                 Some(0) => {}
                 Some(index) => progress.redo(excluded.get(index - 1).copied()),
-                None => return Ok(SeriesOutcome { done, remark: Some(self.stands(&progress)) }),
+                None => return Ok(self.stands(&progress)),
             }
         }
         while progress.next != NextRecording::Finished {
-            let begun = match self.choose(&progress, &mut station).await? {
-                Choice::Begin(begun) => begun.in_study(participants, is_last(&progress)),
-                Choice::Leave(remark) => {
-                    let remark = remark.unwrap_or_else(|| self.stands(&progress));
-                    return Ok(SeriesOutcome { done, remark: Some(remark) });
-                }
+            let mut begun = match self.choose(&progress, &mut station).await? {
+                Choice::Begin(begun) => *begun,
+                Choice::Leave(remark) => return Ok(remark.unwrap_or_else(|| self.stands(&progress))),
             };
+            (begun.participants_done, begun.is_last) = (Some(participants), is_last(&progress));
             let end = live::run(begun, &mut station).await?;
             let (leaving, slot) = (end.leaving, progress.next.slot());
             done.push(end);
@@ -219,7 +221,7 @@ impl Planned {
                 LeavingReason::Redo => progress.redo(slot),
             }
         }
-        Ok(SeriesOutcome { done, remark: Some(self.stands(&progress)) })
+        Ok(self.stands(&progress))
     }
 
     /// Prepares the next recording of the series, after asking the wizard the questions that come before it.
@@ -251,7 +253,7 @@ impl Planned {
                 SessionStart::New { files, trial, out: self.series.out.clone() }
             }
         };
-        let begun = PreparedSession::new(beginning)?.comparing(self.series.compare.clone());
+        let mut begun = PreparedSession::new(beginning, self.series.compare.clone())?;
         // Only people are asked for consent.
         let is_simulated = self.series.files.spec.participant.kind == ParticipantKind::Simulated;
         if progress.consent || is_simulated {
@@ -261,7 +263,10 @@ impl Planned {
         let text = asks_on_display.then_some(self.study.plan.consent.as_str());
         let on_display = station.display.welcome(begun.engine.session(), text);
         match ask_consent(station, consent(&self.study, progress, &label, on_display), on_display).await? {
-            Some((0, on)) => Ok(Choice::Begin(Box::new(begun.with_consent(Some(self.study.consent_given(on)))))),
+            Some((0, on)) => {
+                begun.consent = Some(self.study.consent_given(on));
+                Ok(Choice::Begin(Box::new(begun)))
+            }
             Some(_) => {
                 let remark = format!("{} does not agree to be recorded: nothing was recorded", progress.code);
                 Ok(Choice::Leave(Some(remark)))

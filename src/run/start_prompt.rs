@@ -19,18 +19,12 @@ use tomcom_session::wall_display::AnswerDevice;
 const REDRAW: Duration = Duration::from_millis(100);
 
 /// Asks the wizard a question; returns the index of the chosen answer, or `None` if the wizard quits the program.
-///
-/// # Errors
-/// The terminal was closed.
 pub(super) async fn ask(station: &mut OperatorStation, question: StartPrompt) -> Result<Option<usize>, LiveError> {
     Ok(ask_consent(station, question, false).await?.map(|(index, _)| index))
 }
 
 /// Asks the wizard a question that, with `on_display`, the participant's page can answer, too, by choosing the first
 /// answer. Returns the answer and where the answer was given.
-///
-/// # Errors
-/// The terminal was closed.
 pub(super) async fn ask_consent(
     station: &mut OperatorStation,
     question: StartPrompt,

@@ -19,14 +19,12 @@ use ratatui::backend::CrosstermBackend;
 use ratatui::{CompletedFrame, Terminal};
 
 use super::ask::ground;
-use super::event_loop::LoopEvent;
+use super::event_loop::{LoopEvent, ShellView};
 use super::frames::{FrameWriter, write_within};
-use crate::console::lists::{RecordingPicker, StartPrompt};
+use crate::console::view;
 use crate::console::view::recordings_page::draw_recordings;
 use crate::console::view::sheet::draw_question;
 use crate::console::view::theme::{TerminalBackground, Theme};
-use crate::console::{ConsoleModel, view};
-use tomcom_session::Session;
 use tomcom_session::settings::{ColourTheme, ConsoleSpec};
 
 /// Writer of frames; `None` unless the terminal is set up for the console.
@@ -156,45 +154,24 @@ impl TerminalScreen {
         self.frames.is_lost()
     }
 
-    /// Composes a frame of the console, which the writing thread then writes; returns it. While the last frame is being
-    /// written, nothing is drawn.
+    /// Composes a frame, which the writing thread then writes; returns it. While the last frame is being written, nothing is
+    /// drawn.
     ///
     /// # Errors
     /// The terminal's size is unknown.
-    pub fn draw(&mut self, session: &Session, model: &ConsoleModel) -> io::Result<Option<CompletedFrame<'_>>> {
-        if self.is_ready() && model.rings {
-            self.composed.write_all(&[BELL])?;
-        }
-        self.compose(|frame| view(session, model, frame))
-    }
-
-    /// Composes a frame with a question, and a notice below it, on an otherwise empty screen.
-    ///
-    /// # Errors
-    /// The terminal's size is unknown.
-    pub fn ask(
-        &mut self,
-        question: &StartPrompt,
-        notice: Option<&str>,
-        theme: Theme,
-    ) -> io::Result<Option<CompletedFrame<'_>>> {
-        self.compose(|frame| draw_question(question, notice, theme, frame))
-    }
-
-    /// Composes a frame with a list of recordings on an otherwise empty screen.
-    ///
-    /// # Errors
-    /// The terminal's size is unknown.
-    pub fn list(&mut self, picker: &RecordingPicker, theme: Theme) -> io::Result<Option<CompletedFrame<'_>>> {
-        self.compose(|frame| draw_recordings(picker, theme, frame))
-    }
-
-    fn compose(&mut self, draw: impl FnOnce(&mut ratatui::Frame)) -> io::Result<Option<CompletedFrame<'_>>> {
+    pub(super) fn draw(&mut self, shown: &ShellView<'_>) -> io::Result<Option<CompletedFrame<'_>>> {
         if !self.is_ready() {
             return Ok(None);
         }
+        if matches!(shown, ShellView::Console(_, model) if model.rings) {
+            self.composed.write_all(&[BELL])?;
+        }
         queue!(self.composed, BeginSynchronizedUpdate)?;
-        let drawn = self.terminal.draw(draw)?;
+        let drawn = self.terminal.draw(|frame| match *shown {
+            ShellView::Console(session, model) => view(session, model, frame),
+            ShellView::Question(question, notice, theme) => draw_question(question, notice, theme, frame),
+            ShellView::Recordings(picker, theme) => draw_recordings(picker, theme, frame),
+        })?;
         queue!(self.composed, EndSynchronizedUpdate)?;
         self.frames.show(self.composed.take());
         Ok(Some(drawn))
@@ -356,8 +333,6 @@ pub(super) struct JobControl {
 
 #[cfg(unix)]
 impl JobControl {
-    /// # Errors
-    /// Signals cannot be received.
     pub fn start() -> io::Result<JobControl> {
         use rustix::process::Signal;
         use tokio::signal::unix::{SignalKind, signal};
@@ -365,7 +340,6 @@ impl JobControl {
         Ok(JobControl { stop: of(Signal::TSTP)?, go_on: of(Signal::CONT)? })
     }
 
-    /// The next signal.
     pub async fn next(&mut self) -> LoopEvent {
         tokio::select! {
             biased;

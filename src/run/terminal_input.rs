@@ -20,6 +20,13 @@ pub struct TerminalInput {
     _alive: std::os::unix::net::UnixStream,
 }
 
+impl TerminalInput {
+    /// The waiting messages from the terminal.
+    pub fn waiting(&mut self) -> Vec<ConsoleMessage> {
+        std::iter::from_fn(|| self.messages.try_recv().ok()).collect()
+    }
+}
+
 #[cfg(unix)]
 mod reading {
     use std::io;
@@ -56,11 +63,6 @@ mod reading {
             let read = move || read_all(&terminal, &ended, &sender);
             std::thread::Builder::new().name("terminal input".to_string()).spawn(read)?;
             Ok(TerminalInput { messages, resized, _alive: alive })
-        }
-
-        /// The waiting messages from the terminal.
-        pub fn waiting(&mut self) -> Vec<ConsoleMessage> {
-            std::iter::from_fn(|| self.messages.try_recv().ok()).collect()
         }
 
         /// The next message from the terminal; `None` when the terminal is closed.
@@ -133,11 +135,6 @@ mod reading {
             };
             std::thread::Builder::new().name("terminal input".to_string()).spawn(read_all)?;
             Ok(TerminalInput { messages })
-        }
-
-        /// The waiting messages from the terminal.
-        pub fn waiting(&mut self) -> Vec<ConsoleMessage> {
-            std::iter::from_fn(|| self.messages.try_recv().ok()).collect()
         }
 
         /// The next message from the terminal; `None` when the terminal is closed.

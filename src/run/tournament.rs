@@ -127,9 +127,8 @@ fn read(
 /// A recording cannot be written or read, or its folder holds another recording.
 pub fn run(request: &TournamentRequest, done: impl Fn() + Sync) -> Result<Tournament, RecordingError> {
     let all = request.simulated();
-    let contestants: Result<Vec<Contestant>, RecordingError> =
-        all.iter().map(|concept| request.contestant(concept, &done)).collect();
-    let contestants = contestants?;
+    let contestants = all.iter().map(|concept| request.contestant(concept, &done));
+    let contestants = contestants.collect::<Result<Vec<Contestant>, RecordingError>>()?;
     let shown: Vec<Contestant> = contestants
         .iter()
         .zip(&all)

@@ -1,9 +1,11 @@
 //! A session with everything that is derived from it press by press: errors, their causes, and the belief estimate.
 //! Live sessions and replays derive these with the same code.
 
+use std::collections::BTreeMap;
+
 use crate::apply::{ApplyError, apply};
 use crate::external::happenings::Happenings;
-use crate::history::false_beliefs::EstimatedFalseBeliefs;
+use crate::history::false_beliefs::{self, EstimatedFalseBeliefs};
 use crate::probes::{ProbeEvent, ProbeSubject, StartedProbe};
 use crate::tracker::TrackerEvent;
 use crate::wizard_log::WizardLog;
@@ -53,6 +55,8 @@ pub struct SessionFollower {
     pub estimated: Option<PressBeliefEstimate>,
     /// At the beginning of the last freeze probe.
     pub probed: Option<ProbedEstimate>,
+    /// What a simulated participant itself believed wrong that caused an error, in words, by the time of the press.
+    own_false_beliefs: BTreeMap<SessionTime, String>,
     /// What the next question tells an external concept; `None` without one.
     pub(crate) happenings: Option<Happenings>,
 }
@@ -126,6 +130,7 @@ impl SessionFollower {
             estimates: true,
             estimated: None,
             probed: None,
+            own_false_beliefs: BTreeMap::new(),
             happenings,
         }
     }
@@ -293,6 +298,14 @@ impl SessionFollower {
         SessionFollower { estimates: false, ..self }
     }
 
+    /// What was believed wrong just before an error, in words: by a simulated participant itself, as far as that caused the
+    /// error, and by the estimate. `before`: the kitchen before the press.
+    pub fn believed_wrong(&self, press: SessionTime, before: State) -> Option<String> {
+        let estimated = self.false_beliefs.told_before(&self.session, press, before);
+        let told: Vec<String> = self.own_false_beliefs.get(&press).cloned().into_iter().chain(estimated).collect();
+        (!told.is_empty()).then(|| told.join("; "))
+    }
+
     fn human_pressed(&mut self, stamped: &TimestampedEvent, press: &Press) {
         let kitchen = self.session.kitchen.clone();
         let number = self.session.all_presses();
@@ -303,8 +316,10 @@ impl SessionFollower {
             let found = || self.attributor.cause(&kitchen, &mut self.cost, belief, press, number);
             told.or_else(|| self.finds_causes.then(found))
         });
-        if let Some(cause) = cause {
+        if let (Some(cause), Some(belief)) = (cause, &belief) {
             self.episodes.erred(&kitchen, cause);
+            let told = false_beliefs::told_by_participant(&self.session, press.before, belief, cause, &self.episodes);
+            self.own_false_beliefs.extend(told.map(|told| (stamped.time, told)));
         }
         let belief_known = belief.is_some();
         let (seq, time, button, before) = (stamped.seq, stamped.time, press.button, press.before);

@@ -143,7 +143,7 @@ pub fn describe(table: &StudyArmTable) -> String {
             row.signals_per_100.in_words(1.0, 1),
             row.signal_time.in_words(100.0, 1),
         ];
-        text += &format!("| {} | {} | {} |\n", row.arm.name(), row.trials, cells.join(" | "));
+        text += &format!("| {} | {} | {} |\n", row.arm.title(), row.trials, cells.join(" | "));
     }
     text += "\nper 100 presses of the human; in brackets intervals of 95 %, by a bootstrap over participants\n";
     let without = table.arms.iter().any(|row| row.sequence_length.value.is_none());

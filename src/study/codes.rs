@@ -12,7 +12,6 @@ use crate::standing::exclusion_status;
 use tomcom_core::base::text::{count, decimal, did_you_mean};
 use tomcom_core::measures::raters::{
     AgreementTable, CodableErrors, ErrorCauseCode, RaterAgreement, RaterCodes, RaterConsensus, RaterPair, of_most,
-    unsettled,
 };
 use tomcom_session::error_list::ListedError;
 use tomcom_session::files::file_error::{self, FileResult};
@@ -114,7 +113,7 @@ impl CodedRecording {
     }
 
     fn disagreements(&self, of: (&String, &RaterCodes), with: (&String, &RaterCodes)) -> Vec<RaterDisagreement> {
-        let differ = unsettled(&self.codable.errors, [of.1, with.1]);
+        let differ = of.1.disagreements(with.1);
         let is_pairs =
             |consensus: &&RaterConsensus| consensus.raters.contains(of.0) && consensus.raters.contains(with.0);
         let consensus = self.consensus.as_ref().filter(is_pairs);

@@ -25,8 +25,7 @@ fn check(kitchen: &Kitchen, orders: &[&str], presses: &[&str], expected: &[(&str
     let recipes = kitchen.true_recipes();
     let mut state = kitchen.empty_state();
     for (&location, name) in kitchen.orders.iter().zip(orders) {
-        let dish = kitchen.dishes.iter().position(|dish| dish.name == *name).expect("a dish of the menu");
-        state.set_order(location, OrderContent::Dish(DishId(dish as u8)));
+        state.set_order(location, OrderContent::Dish(kitchen.dish_named(name).expect("a dish of the menu")));
     }
     for press in presses {
         let (who, name) = press.split_once(": ").expect("agent: button");
@@ -182,8 +181,8 @@ fn a_burger_is_made_of_four_things_in_fourteen_presses() {
 
 /// All the ingredients in the kitchen, sorted.
 fn ingredients(kitchen: &Kitchen, state: State) -> Vec<usize> {
-    let places = kitchen.locations.iter().enumerate().filter(|(_, location)| location.kind != LocationKind::Order);
-    let contents = places.map(|(index, _)| state.content(tomcom_core::kitchen::LocationId(index as u8)));
+    let places = kitchen.location_ids().filter(|&place| kitchen.location(place).kind != LocationKind::Order);
+    let contents = places.map(|place| state.content(place));
     let items = contents.flat_map(|content| kitchen.content(content).items.clone());
     let mut all: Vec<usize> = items.filter_map(|item| kitchen.content(item).ingredient).collect();
     all.sort_unstable();
@@ -272,8 +271,7 @@ fn the_largest_kitchen_has_a_key_for_every_state() {
     assert!(refused.contains("at most 274877906944"), "{refused}");
     let kitchen = Arc::new(of_eight_contents(9, "dishes").expect("at the limit"));
     let recipes = kitchen.true_recipes();
-    let physical: Vec<LocationId> =
-        (kitchen.orders.len()..kitchen.locations.len()).map(|index| LocationId(index as u8)).collect();
+    let physical: Vec<LocationId> = kitchen.location_ids().skip(kitchen.orders.len()).collect();
     let mut shared = CostToGo::new(kitchen.clone());
     for number in 0..30 {
         let mut random = stream(10, "states at the limit", number);

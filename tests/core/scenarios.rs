@@ -8,17 +8,15 @@ use std::sync::Arc;
 
 use serde::Deserialize;
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::concept::DevConcept;
-use tomcom_core::communication::concept::TomConcept;
-use tomcom_core::communication::concept::{Concept, ConceptName, DecisionPoint};
-use tomcom_core::communication::concept::{RobotIntent, Situation};
-use tomcom_core::communication::concept::{SilentConcept, concept};
+use tomcom_core::communication::concept::{
+    Concept, ConceptName, DecisionPoint, DevConcept, RobotIntent, SilentConcept, Situation, TomConcept, concept,
+};
 use tomcom_core::communication::planner::Planner;
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption};
 use tomcom_core::communication::settings::AssistantSpec;
 use tomcom_core::communication::{HighlightSet, Signal, signals};
 use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::{Agent, AspectId, AspectKind, ButtonId, Kitchen, State};
+use tomcom_core::kitchen::{Agent, AspectId, AspectKind, Kitchen, State};
 use tomcom_core::mind::dirichlet::{Dirichlet, DirichletBelief};
 use tomcom_core::mind::model::HumanModel;
 
@@ -95,9 +93,8 @@ impl Scenario {
         for name in self.belief.keys() {
             assert!(kitchen.aspects.iter().any(|aspect| aspect.name == *name), "no aspect {name}");
         }
-        let of = |index: usize| {
-            let aspect = &kitchen.aspects[index];
-            let id = AspectId(index as u8);
+        let of = |id: AspectId| {
+            let aspect = &kitchen.aspects[id.index()];
             let truth = kitchen.true_value(state, id);
             let told = self.belief.get(&aspect.name);
             let others = 1.0 - if told.is_some() { 1.0 } else { self.knows };
@@ -113,7 +110,7 @@ impl Scenario {
             };
             Dirichlet::new(mean, precision)
         };
-        DirichletBelief { aspects: (0..kitchen.aspects.len()).map(of).collect() }
+        DirichletBelief { aspects: kitchen.aspect_ids().map(of).collect() }
     }
 
     fn outlook(&self, kitchen: &Kitchen) -> RobotIntent {
@@ -136,12 +133,34 @@ impl Scenario {
 
     /// What a concept says; `error`: the human's last press was one, and has this number.
     fn ask(&self, concept: &mut dyn Concept, error: Option<u64>) -> Recommendation {
+        let posed = self.pose();
+        concept.advise(&mut CostToGo::new(posed.kitchen.clone()), &DecisionPoint { error, ..posed.moment() })
+    }
+
+    fn pose(&self) -> Posed {
         let kitchen = self.kitchen();
         let state = self.state(&kitchen);
-        let belief = self.belief(&kitchen, state);
-        let situation = Situation { robot: self.outlook(&kitchen), ..Situation::new(state, &belief) };
-        let signals = usual_signals(&kitchen);
-        concept.advise(&mut CostToGo::new(kitchen), &DecisionPoint { error, ..moment(situation, &signals) })
+        let (belief, robot, signals) = (self.belief(&kitchen, state), self.outlook(&kitchen), usual_signals(&kitchen));
+        Posed { kitchen, state, belief, robot, signals }
+    }
+}
+
+/// What a scenario asks about.
+struct Posed {
+    kitchen: Arc<Kitchen>,
+    state: State,
+    belief: DirichletBelief,
+    robot: RobotIntent,
+    signals: Vec<Signal>,
+}
+
+impl Posed {
+    fn situation(&self) -> Situation<'_> {
+        Situation { robot: self.robot, ..Situation::new(self.state, &self.belief) }
+    }
+
+    fn moment(&self) -> DecisionPoint<'_> {
+        moment(self.situation(), &self.signals)
     }
 }
 
@@ -243,34 +262,20 @@ fn an_answer_depends_on_nothing_that_was_asked_before() {
     let spec = nobody_looks_around();
     let mut cost = CostToGo::new(kitchen.clone());
     let mut planner = Planner::new(kitchen.clone(), &HumanModel::default(), spec, 1);
-    let signals = usual_signals(&kitchen);
     for scenario in paths.iter().map(|path| Scenario::read(path)).filter(|other| other.layout == first.layout) {
-        let state = scenario.state(&kitchen);
-        let belief = scenario.belief(&kitchen, state);
-        let robot = scenario.outlook(&kitchen);
-        let situation = Situation { robot, ..Situation::new(state, &belief) };
         if scenario.cost.is_none() {
-            assert_eq!(
-                planner.advise(&mut cost, &moment(situation, &signals)),
-                scenario.answer(1),
-                "{}",
-                scenario.about
-            );
+            let advice = planner.advise(&mut cost, &scenario.pose().moment());
+            assert_eq!(advice, scenario.answer(1), "{}", scenario.about);
         }
     }
 }
 
 #[test]
 fn benefits_of_signals_that_would_not_be_sent_take_fewer_rollouts_and_the_others_are_those_of_the_advice() {
-    let scenario = named("finished_rice_unseen");
-    let (kitchen, spec) = (scenario.kitchen(), AssistantSpec::default());
-    let state = scenario.state(&kitchen);
-    let belief = scenario.belief(&kitchen, state);
-    let signals = usual_signals(&kitchen);
-    let situation = Situation { robot: scenario.outlook(&kitchen), ..Situation::new(state, &belief) };
-    let moment = moment(situation, &signals);
-    let mut cost = CostToGo::new(kitchen.clone());
-    let mut planner = Planner::new(kitchen, &HumanModel::default(), spec, 1);
+    let posed = named("finished_rice_unseen").pose();
+    let moment = posed.moment();
+    let mut cost = CostToGo::new(posed.kitchen.clone());
+    let mut planner = Planner::new(posed.kitchen.clone(), &HumanModel::default(), AssistantSpec::default(), 1);
     let advice = planner.advise(&mut cost, &moment).options;
     let mut above = |least: f64| {
         let matters_above = |signal: &Signal| if *signal == advice[0].signal { least } else { f64::NEG_INFINITY };
@@ -285,19 +290,15 @@ fn benefits_of_signals_that_would_not_be_sent_take_fewer_rollouts_and_the_others
 
 #[test]
 fn what_will_be_seen_anyway_is_not_worth_saying() {
-    let scenario = named("finished_rice_unseen");
-    let kitchen = scenario.kitchen();
-    let state = scenario.state(&kitchen);
-    let belief = scenario.belief(&kitchen, state);
+    let posed = named("finished_rice_unseen").pose();
+    let kitchen = &posed.kitchen;
     let pot = AspectId::of_location(kitchen.location_named("cooking_pot").expect("a pot"));
-    let signals = usual_signals(&kitchen);
     let benefit = |other_looks_hz: f64, capture: f64, changed: &[AspectId]| {
         let mut spec = AssistantSpec::default();
         (spec.rollout.other_looks_hz, spec.rollout.capture) = (Some(other_looks_hz), Some(capture));
         let mut planner = Planner::new(kitchen.clone(), &HumanModel::default(), spec, 1);
-        let situation = Situation { changed, robot: scenario.outlook(&kitchen), ..Situation::new(state, &belief) };
-        let mut cost = CostToGo::new(kitchen.clone());
-        let answer = planner.advise(&mut cost, &moment(situation, &signals));
+        let situation = Situation { changed, ..posed.situation() };
+        let answer = planner.advise(&mut CostToGo::new(kitchen.clone()), &moment(situation, &posed.signals));
         let option = answer.options.iter().find(|option| option.signal.target() == Some("cooking_pot"));
         option.expect("the pot may be highlighted").benefit
     };
@@ -373,9 +374,7 @@ fn tom_tells_what_deviates_most_whether_it_matters_or_not() {
 fn tom_has_the_signals_of_the_paper_and_its_deviation() {
     for path in scenarios() {
         let scenario = Scenario::read(&path);
-        let kitchen = scenario.kitchen();
-        let state = scenario.state(&kitchen);
-        let belief = scenario.belief(&kitchen, state);
+        let Posed { kitchen, state, belief, .. } = scenario.pose();
         let deviation = |aspect: AspectId| 1.0 - belief.p_truth(&kitchen, state, aspect);
         let recipes = kitchen.wanted(state).map(|(order, dish)| {
             let told = [AspectId::of_location(order), kitchen.aspect_of_dish(dish)];
@@ -447,7 +446,7 @@ fn dev_proposes_after_an_error_presses_that_each_bring_the_orders_nearer() {
         let first = kitchen.button_named(Agent::Human, &most[0]).expect("a button of the human");
         let here = cost.all_orders(state, &recipes);
         // Either it helps at once, or something of the robot's has to come first.
-        let robots = (0..kitchen.buttons[Agent::Robot.index()].len()).map(|index| ButtonId(index as u8));
+        let robots = kitchen.button_ids(Agent::Robot);
         let mut helps = |state: State, than: u32| {
             let after = kitchen.press(state, &recipes, Agent::Human, first);
             after.is_some_and(|after| cost.all_orders(after, &recipes) < than)

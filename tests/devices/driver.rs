@@ -14,7 +14,7 @@ use tomcom_arm::real_arm::ArmOrder;
 use tomcom_core::base::rng::{Stream, stream};
 use tomcom_core::kitchen::{Agent, ButtonId};
 use tomcom_core::robot::{AbortReason, ArmPhase, ArmStage, SafetyMode};
-use tomcom_devices::ur::client::{ClientFault, ClientNews, RtdeClient};
+use tomcom_devices::ur::client::{ArmReading, ClientFault, ClientNews, RtdeClient};
 use tomcom_devices::ur::controller::{ProgramState, SimulatedController};
 use tomcom_devices::ur::dashboard::answer;
 use tomcom_devices::ur::driver::{ArmIdentity, DriverAction, PROGRAM, UrDriver};
@@ -23,11 +23,10 @@ use tomcom_devices::ur::link::{self, ArmNews, UrConnection};
 use tomcom_devices::ur::rtde::{RtdeConnection, package};
 use tomcom_devices::ur::server::ControllerServer;
 use tomcom_session::Event;
-use tomcom_session::files::read_kitchen;
 use tomcom_session::preflight_checks::PreflightVerdict;
 use tomcom_session::settings::RobotSpec;
 
-use super::{LAYOUT, OFF, messages};
+use super::{OFF, kitchen, messages};
 
 /// Speed limit of a joint of the UR5, in radians per second.
 const FASTEST_RAD_S: f64 = std::f64::consts::PI;
@@ -62,11 +61,9 @@ struct Rehearsal {
 
 impl Rehearsal {
     fn new(speed: f64) -> Rehearsal {
-        let kitchen = read_kitchen(LAYOUT.as_ref()).expect("the kitchen loads").kitchen;
-        let driver = UrDriver::new(&kitchen, speed, true);
         let mut rehearsal = Rehearsal {
             controller: OFF.clone(),
-            driver,
+            driver: UrDriver::new(&kitchen(), speed, true),
             client: RtdeClient::default(),
             rtde: None,
             connections: 0,
@@ -117,12 +114,8 @@ impl Rehearsal {
         for action in actions {
             match action {
                 DriverAction::Tell(event) => self.told.push(*event),
-                DriverAction::Dashboard(command) => {
-                    answer(command, &mut self.controller);
-                }
-                DriverAction::Upload => {
-                    self.controller.run_script(PROGRAM);
-                }
+                DriverAction::Dashboard(command) => drop(answer(command, &mut self.controller)),
+                DriverAction::Upload => _ = self.controller.run_script(PROGRAM),
             }
         }
     }
@@ -220,7 +213,7 @@ fn an_arm_is_switched_on_and_goes_above_every_button_before_it_presses() {
 fn another_arm_than_the_programs_is_not_moved() {
     let mut rehearsal = Rehearsal::new(1.0);
     rehearsal.switch_on();
-    let mut reading = tomcom_devices::ur::client::ArmReading { mode: 7, runtime: 1, ..Default::default() };
+    let mut reading = ArmReading { mode: 7, runtime: 1, ..Default::default() };
     reading.joints = rehearsal.controller.arm_at(1.0).actual;
     rehearsal.driver.step(&reading, 10.0);
     rehearsal.driver.confirm(ArmStage::Untried);
@@ -327,34 +320,27 @@ fn a_button_that_does_not_click_is_given_up() {
     let bottom = rehearsal.driver.inputs().poses[3];
     let mut away = rehearsal.driver.clone();
     assert_eq!(away.inputs().wire, 2);
-    let reading = |done, result| tomcom_devices::ur::client::ArmReading {
+    let leg = away.inputs().leg;
+    let reading = |done, result| ArmReading {
         joints: bottom,
         mode: 7,
         runtime: 2,
         done,
         result,
-        leg: away_leg(&rehearsal),
+        leg,
         stands: true,
         ..Default::default()
     };
-    let actions = away.step(&reading(away_leg(&rehearsal), 2), 1e6);
-    let failed = Event::RobotAborts { button: button_name(2), reason: AbortReason::NoClick };
+    let actions = away.step(&reading(leg, 2), 1e6);
+    let button = kitchen().button(Agent::Robot, ButtonId(2)).name.clone();
+    let failed = Event::RobotAborts { button, reason: AbortReason::NoClick };
     assert!(actions.contains(&DriverAction::Tell(Box::new(failed))), "{actions:?}");
     assert_eq!(away.inputs().poses[0], bottom, "it goes up from there");
 }
 
-fn away_leg(rehearsal: &Rehearsal) -> i32 {
-    rehearsal.driver.inputs().leg
-}
-
-fn button_name(number: usize) -> String {
-    let kitchen = read_kitchen(LAYOUT.as_ref()).expect("the kitchen loads").kitchen;
-    kitchen.buttons[Agent::Robot.index()][number].name.clone()
-}
-
 #[test]
 fn a_button_that_closes_without_the_arm_is_a_press_of_the_participant() {
-    let kitchen = read_kitchen(LAYOUT.as_ref()).expect("the kitchen loads").kitchen;
+    let kitchen = kitchen();
     let [human, robot] = [Agent::Human, Agent::Robot].map(|agent| &kitchen.buttons[agent.index()]);
     let place = |at: usize| human.iter().find(|button| button.at_m == robot[at].at_m);
     let shared = (0..robot.len()).find_map(|at| Some((at, place(at)?.name.clone()))).expect("a button of both");
@@ -363,7 +349,7 @@ fn a_button_that_closes_without_the_arm_is_a_press_of_the_participant() {
     rehearsal.driver.order(rehearsal.order);
     (0..100).for_each(|_| rehearsal.cycle());
     rehearsal.told.clear();
-    let mut reading = tomcom_devices::ur::client::ArmReading {
+    let mut reading = ArmReading {
         joints: rehearsal.controller.arm_at(1.0).actual,
         mode: 7,
         runtime: 2,
@@ -639,7 +625,7 @@ async fn over_the_network_it_switches_the_arm_on_and_comes_back_after_a_loss() {
     let ports: Vec<u16> = server.addresses().iter().map(SocketAddr::port).collect();
     let (faults, lines) = mpsc::channel(4);
     tokio::spawn(server.run(lines, |_| {}));
-    let kitchen = read_kitchen(LAYOUT.as_ref()).expect("the kitchen loads").kitchen;
+    let kitchen = kitchen();
     let ports: [u16; 5] = ports.try_into().expect("five ports");
     let checks = link::examine(here, ports, UrDriver::new(&kitchen, 0.5, false)).await.expect("it answers");
     assert!(checks.iter().all(|check| check.verdict == PreflightVerdict::Ok), "{checks:?}");

@@ -14,6 +14,7 @@ use tokio::io::{AsyncBufReadExt, AsyncReadExt, AsyncWriteExt, BufReader};
 use tokio::net::TcpStream;
 use tokio::sync::mpsc;
 use tomcom_arm::physics::CYCLE_S;
+use tomcom_core::kitchen::Kitchen;
 use tomcom_core::robot::SafetyMode;
 use tomcom_devices::ur::controller::{ProgramState, RobotMode, Series, SimulatedController};
 use tomcom_devices::ur::dashboard::answer;
@@ -24,13 +25,13 @@ use tomcom_devices::ur::server::ControllerServer;
 use tomcom_devices::ur::variables::Datum;
 use tomcom_session::files::read_kitchen;
 
-const LAYOUT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../layouts/sushi.toml");
+fn kitchen() -> Kitchen {
+    let layout = concat!(env!("CARGO_MANIFEST_DIR"), "/../../layouts/sushi.toml");
+    read_kitchen(Path::new(layout)).expect("the kitchen loads").kitchen
+}
 
 /// Building one takes a while, as its arm settles.
-static OFF: LazyLock<SimulatedController> = LazyLock::new(|| {
-    let kitchen = read_kitchen(Path::new(LAYOUT)).expect("the kitchen loads").kitchen;
-    SimulatedController::new(&kitchen, Series::Cb3)
-});
+static OFF: LazyLock<SimulatedController> = LazyLock::new(|| SimulatedController::new(&kitchen(), Series::Cb3));
 static RUNNING: LazyLock<SimulatedController> = LazyLock::new(|| {
     let mut controller = OFF.clone();
     assert_eq!(answer("brake release", &mut controller).as_deref(), Some("Brake releasing"));

@@ -7,7 +7,7 @@ use tomcom::run::series::recordings_of;
 use tomcom_session::log::{CORRECTION_NAME, RecordingLock, correct, rule};
 use tomcom_session::plan::{ParticipantProgress, RecordingOutcome, Study};
 use tomcom_study::bids_export;
-use tomcom_study::files::recordings;
+use tomcom_study::files::{corrected, recordings};
 use tomcom_study::gathered::GatheredRecordings;
 use tomcom_study::kept_cost::KeptCost;
 use tomcom_study::pass::reading::{self, AnalysisScope};
@@ -539,6 +539,15 @@ fn every_reader_has_the_corrected_code_until_it_is_taken_back() {
     assert_eq!(listed(&out), before);
     let told = correct(&recording, None, "").expect_err("refused").to_string();
     assert!(told.contains("no correction of the code P02"), "{told}");
+    // A recording of the same trial that is left out is no second one.
+    let correction = correct(&recording, Some("P01"), "why").expect("corrected");
+    let is_second = || {
+        let told = corrected::remarks(&recording, &correction).expect("readable");
+        told.iter().any(|remark| remark.starts_with("P01 has a recording of trial 1 of the plan \"paper\" already"))
+    };
+    assert!(is_second());
+    rule(&out.join("P01-1"), true, "the wrong person").expect("excluded");
+    assert!(!is_second());
     fs::write(recording.join(CORRECTION_NAME), "[[correction]]\nbefore = 1\n").expect("written");
     let told = LogReader::open(&recording).expect_err("refused").to_string();
     assert!(told.contains("correction.toml:2"), "{told}");

@@ -197,7 +197,7 @@ def shows_the_robot(tomcom, browser, folder, seed, shown):
         assert page.ask("document.querySelector('.zone.robot h2').textContent") == "Robot stopped"
         page.screenshot(folder / f"robot-{shown}-stopped.png")
         console.key("\x12")
-        page.wait_for("document.querySelector('.zone.robot h2').textContent === 'The robot goes on.'")
+        page.wait_for("document.querySelector('.zone.robot h2').textContent === 'The robot moves again.'")
         page.close()
         console.quit()
     told = [message["robot"] for message in page.robot]

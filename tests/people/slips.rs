@@ -3,9 +3,9 @@
 use tomcom_core::base::rng::stream;
 use tomcom_core::kitchen::{Agent, ButtonId, Kitchen};
 use tomcom_people::participant::hand::slipped_button;
-use tomcom_people::participant::population::{Population, TraitSpread};
+use tomcom_people::participant::population::Population;
 
-use super::behaviour::{Bench, unmoved};
+use super::behaviour::{Bench, exactly, unmoved};
 use crate::files::{self, kitchen};
 
 const DRAWS: u32 = 40_000;
@@ -82,13 +82,13 @@ fn a_slip_is_never_the_intended_button() {
 
 #[test]
 fn people_slip_as_often_as_their_trait_says() {
-    let never = TraitSpread { median: 0.000_001, sigma: 0.0 };
+    let never = exactly(0.000_001);
     let clumsy = Population {
-        slip: TraitSpread { median: 0.3, sigma: 0.0 },
+        slip: exactly(0.3),
         look_alike_slip: never,
         thoughtless: never,
         // Presses at the end of one's patience do not slip.
-        patience_s: TraitSpread { median: 1000.0, sigma: 0.0 },
+        patience_s: exactly(1000.0),
         ..unmoved()
     };
     let (mut all, mut slips) = (0, 0);

@@ -2,16 +2,11 @@
 
 use tomcom_core::base::rng::stream;
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::communication::Signal;
 use tomcom_core::kitchen::{Agent, ButtonAction, ButtonId, Kitchen};
 use tomcom_people::participant::eyes::GazeDropoutSchedule;
-use tomcom_people::participant::population::{Population, TraitSpread};
+use tomcom_people::participant::population::Population;
 
-use super::behaviour::{Bench, unmoved};
-
-fn exactly(median: f64) -> TraitSpread {
-    TraitSpread { median, sigma: 0.0 }
-}
+use super::behaviour::{Bench, exactly, ignorant, unmoved};
 
 #[test]
 fn a_trait_changes_no_other_trait_of_a_person() {
@@ -54,10 +49,7 @@ fn presses_after(population: &Population, what: impl Fn(&mut Bench)) -> usize {
 fn who_does_not_know_how_to_go_on_waits_until_something_changes_or_a_signal_is_read() {
     let usual = presses_after(&Population { gets_stuck: exactly(0.0), ..stuck() }, |_| ());
     let alone = presses_after(&stuck(), |_| ());
-    let told = presses_after(&stuck(), |bench| {
-        let counter = bench.location("counter");
-        bench.one.on_signal(bench.now, Some(counter), &Signal::Highlight("counter".to_string()));
-    });
+    let told = presses_after(&stuck(), |bench| bench.highlight("counter"));
     let changed = presses_after(&stuck(), |bench| bench.put("counter", "crab raw"));
     assert!(usual > 50 && alone < usual / 8, "{usual}, {alone}");
     assert!(told >= alone + 10, "four of five read the signal: {told}, {alone}");
@@ -66,16 +58,11 @@ fn who_does_not_know_how_to_go_on_waits_until_something_changes_or_a_signal_is_r
 
 /// In how many of 100 cases the recipe is known after it was shown to somebody who did not know it.
 fn told(keeps_own_recipe: f64) -> usize {
-    let wrong = exactly(0.02);
-    let population =
-        Population { learned: wrong, half_forgotten: wrong, keeps_own_recipe: exactly(keeps_own_recipe), ..unmoved() };
+    let population = Population { keeps_own_recipe: exactly(keeps_own_recipe), ..ignorant() };
     let knows = |seed: u64| {
         let mut bench = Bench::new(&population, seed);
         bench.order("order_1", "tuna nigiri");
-        let order = bench.location("order_1");
-        bench.one.on_signal(bench.now, Some(order), &Signal::ShowRecipe("order_1".to_string()));
-        bench.pass(1.6);
-        bench.p_truth("recipe of tuna nigiri") > 0.9
+        bench.knows_when_shown()
     };
     (0..100).filter(|&seed| knows(seed)).count()
 }
@@ -102,10 +89,9 @@ fn misremembered_recipes_are_sure_and_wrong_until_they_are_shown() {
     bench.pass(600.0);
     assert!(bench.p_truth("recipe of tuna nigiri") < 0.05, "time alone corrects nothing");
     bench.order("order_1", "tuna nigiri");
-    let order = bench.location("order_1");
     // One of these is noticed.
     for _ in 0..8 {
-        bench.one.on_signal(bench.now, Some(order), &Signal::ShowRecipe("order_1".to_string()));
+        bench.show_recipe();
         bench.pass(2.0);
     }
     assert!(bench.p_truth("recipe of tuna nigiri") > 0.9, "a signal corrects it");

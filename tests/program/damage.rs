@@ -10,8 +10,9 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 use tomcom_session::log::{LOG_NAME, RecordingLock};
 
-use crate::program::{PATIENCE, TOMCOM, done, end, folder, json, refused, start, tomcom, verified};
+use crate::program::{PATIENCE, TOMCOM, done, end, folder, json, refused, session_file, start, tomcom};
 use crate::pseudo_terminal::Terminal;
+use crate::survival::is_over;
 
 /// Length of a log that has a middle, in bytes: its end is compared more often than the rest.
 const LENGTH: usize = 150_000;
@@ -30,15 +31,8 @@ fn check_damage(name: &str, bad: impl FnOnce(&Path), says: &str) {
     let before = terminal.log();
     bad(&recording.join(LOG_NAME));
     terminal.see("RECORDING LOST");
-    terminal.see("EMERGENCY STOP");
-    terminal.see("ENDED EARLY");
-    let after = terminal.log();
-    let complete = before.rfind('\n').map_or("", |end| &before[..=end]);
-    assert!(after.starts_with(complete), "{name}: what was acknowledged is lost");
-    assert_eq!(verified(&recording)["cut"], true, "{name}");
+    is_over(&terminal, &before, &recording);
     assert!(recording.join(ASIDE).exists(), "{name}: the damaged log is kept");
-    terminal.key("C-c");
-    terminal.is_whole(1);
     terminal.see_words(says);
     terminal.see_words("everything recorded until then is in");
 }
@@ -81,12 +75,8 @@ fn a_log_that_an_editor_saves_again_is_told_at_once_and_saved() {
 
 /// A session file of a few presses, and where its recordings go.
 fn short_session(home: &Path) -> [String; 2] {
-    let session = home.join("short.toml");
-    let root = env!("CARGO_MANIFEST_DIR");
-    let text =
-        format!("layout = \"{root}/layouts/sushi.toml\"\nseed = 3\n[trial]\npresses = 30\n[robot]\narm = \"timed\"\n");
-    fs::write(&session, text).expect("written");
-    [session, home.join("recordings")].map(|path| path.display().to_string())
+    let session = session_file(home, "seed = 3\n[trial]\npresses = 30\n[robot]\narm = \"timed\"\n");
+    [session, home.join("recordings").display().to_string()]
 }
 
 /// The logs of a folder, by the names of their recordings.

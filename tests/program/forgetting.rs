@@ -88,6 +88,15 @@ impl RecordingsFolder {
         self.run(&[&["forget", "--in", root], arguments].concat())
     }
 
+    /// A recording in a folder that is gone, and in whose place nothing can be saved; where it was saved.
+    pub fn rescued(&self, root: &str) -> PathBuf {
+        let mut log = LogWriter::create_live(&self.at(root), "2026-03-14", &header()).expect("a recording");
+        fs::remove_dir_all(self.at(root)).expect("removed");
+        self.put(root, "");
+        let told = log.check(false).expect_err("it is gone").to_string();
+        told.split_once("is in ").expect("where it was saved").1.into()
+    }
+
     /// Every file, with what is in it, by its path.
     pub fn files(&self) -> BTreeMap<String, Vec<u8>> {
         let mut found = BTreeMap::new();
@@ -104,6 +113,12 @@ impl RecordingsFolder {
         }
         found
     }
+}
+
+/// The header of a trial of the default session.
+pub fn header() -> LogHeader {
+    let files = read_session(Path::new("sessions/default.toml")).expect("a session");
+    LogHeader::new(files.spec, 0, files.kitchen.layout, files.kitchen.recipes)
 }
 
 /// Asserts that the program ended with this code and said all of this; what it said.
@@ -369,18 +384,11 @@ fn a_name_that_two_people_in_two_folders_have_is_told_and_not_guessed() {
 fn a_recording_that_was_saved_elsewhere_is_found_by_where_it_belongs() {
     let lab = RecordingsFolder::of_two_people("rescued");
     let rescue = |root: &str| {
-        let files = read_session(std::path::Path::new("sessions/default.toml")).expect("a session");
-        let header = LogHeader::new(files.spec, 0, files.kitchen.layout, files.kitchen.recipes);
-        let mut log = LogWriter::create_live(&lab.at(root), "2026-03-14", &header).expect("a recording");
-        fs::remove_dir_all(lab.at(root)).expect("removed");
-        // Nothing can be saved where it was.
-        lab.put(root, "");
-        let told = log.check(false).expect_err("it is gone").to_string();
-        let (_, saved) = told.split_once("is in ").expect("where it was saved");
+        let saved = lab.rescued(root);
         let to = lab.temporary.join(format!("tomcom-rescued-{}", root.len())).join("2026-03-14-P01-1");
         fs::create_dir_all(to.parent().expect("a folder")).expect("made");
-        fs::rename(saved, &to).expect("moved");
-        fs::remove_dir(std::path::Path::new(saved).parent().expect("a folder")).expect("nothing else is in it");
+        fs::rename(&saved, &to).expect("moved");
+        fs::remove_dir(saved.parent().expect("a folder")).expect("nothing else is in it");
         to
     };
     let (own, other) = (rescue("gone"), rescue("../of-another-study"));

@@ -1,21 +1,12 @@
 //! Commands that write a file or a folder that they are told: what others have written there stays.
 
 use std::fs;
-use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use tomcom::run::files::read_session;
-use tomcom_session::LogHeader;
 use tomcom_session::log::LogWriter;
 
-use crate::forgetting::{RecordingsFolder, ended};
+use crate::forgetting::{RecordingsFolder, ended, header};
 use crate::program::TOMCOM;
-
-/// The header of a trial of the default session.
-fn header() -> LogHeader {
-    let files = read_session(Path::new("sessions/default.toml")).expect("a session");
-    LogHeader::new(files.spec, 0, files.kitchen.layout, files.kitchen.recipes)
-}
 
 #[test]
 fn what_others_wrote_is_not_overwritten_and_what_tomcom_wrote_is() {
@@ -173,21 +164,12 @@ fn no_file_of_a_recording_goes_where_a_link_leads() {
     assert_eq!(lab.text("victim"), "of somebody else");
 }
 
-/// Where a recording is saved whose folder is gone, and where nothing can be.
-fn rescued(lab: &RecordingsFolder, root: &str) -> PathBuf {
-    let mut log = LogWriter::create_live(&lab.at(root), "2026-03-14", &header()).expect("a recording");
-    fs::remove_dir_all(lab.at(root)).expect("removed");
-    fs::write(lab.at(root), "").expect("written");
-    let told = log.check(false).expect_err("it is gone").to_string();
-    told.split_once("is in ").expect("where it was saved").1.into()
-}
-
 #[cfg(unix)]
 #[test]
 fn a_recording_is_saved_among_the_temporary_files_into_a_folder_of_its_own_that_others_cannot_read() {
     use std::os::unix::fs::PermissionsExt;
     let lab = RecordingsFolder::of_two_people("saved");
-    let saved = rescued(&lab, "gone");
+    let saved = lab.rescued("gone");
     let folder = saved.parent().expect("a folder");
     assert_eq!(fs::metadata(folder).expect("a folder").permissions().mode() & 0o777, 0o700);
     assert!(saved.join("events.jsonl").is_file());

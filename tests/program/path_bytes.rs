@@ -9,7 +9,7 @@ use std::process::{Command, Stdio};
 use serde_json::Value;
 use tomcom_session::log::LOG_NAME;
 
-use crate::program::{self, TOMCOM};
+use crate::program::{self, TOMCOM, session_file};
 
 /// Runs a command and demands the exit code; the JSON that it prints.
 fn json(code: i32, arguments: &[&OsStr]) -> Value {
@@ -32,11 +32,8 @@ fn every_command_works_in_a_folder_whose_name_is_no_text() {
         json(code, &words)
     };
     let shown = folder.display().to_string();
-    let session = home.join("short.toml");
-    let layout = Path::new(env!("CARGO_MANIFEST_DIR")).join("layouts/sushi.toml");
-    let settings = "seed = 7\n[trial]\npresses = 20\n[robot]\narm = \"timed\"\n";
-    fs::write(&session, format!("layout = \"{}\"\n{settings}", layout.display())).expect("written");
-    let simulate = [word("simulate"), session.into_os_string(), word("--trials"), word("1"), word("--out")];
+    let session = session_file(&home, "seed = 7\n[trial]\npresses = 20\n[robot]\narm = \"timed\"\n");
+    let simulate = [word("simulate"), word(session.as_str()), word("--trials"), word("1"), word("--out")];
     let [all, recording] = [at("all"), at("all/seed7-S001")];
     let simulated = run(0, &[&simulate[..], &[all.clone(), word("--rerun")]].concat());
     assert_eq!(simulated["recordings"][0], format!("{shown}/all/seed7-S001"));

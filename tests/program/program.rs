@@ -70,19 +70,25 @@ pub fn verified(recording: &Path) -> Value {
     found
 }
 
+/// A session file of the sushi kitchen with these settings.
+pub fn session_file(folder: &Path, settings: &str) -> String {
+    let session = folder.join("session.toml");
+    let layout = concat!(env!("CARGO_MANIFEST_DIR"), "/layouts/sushi.toml");
+    fs::write(&session, format!("layout = \"{layout}\"\n{settings}")).expect("written");
+    session.display().to_string()
+}
+
 /// A plan of two participants with trials of a few presses.
 pub fn tiny_plan(folder: &Path) -> String {
     let root = env!("CARGO_MANIFEST_DIR");
-    let session = folder.join("tiny.toml");
-    let text = format!(
-        "layout = \"{root}/layouts/sushi.toml\"\nseed = 3\n[trial]\npresses = 6\n[robot]\npress_s = 0.2\n\
+    let settings = format!(
+        "seed = 3\n[trial]\npresses = 6\n[robot]\npress_s = 0.2\n\
          [console]\nvisibility = \"state\"\n[plan]\nname = \"tiny\"\nparticipants = [\"A1\", \"B2\"]\nconditions = [\"none\", \"wizard\"]\n\
          instruction = [\"Show the table.\", \"Show the buttons.\"]\ndebriefing = [\"What did you miss?\"]\n\
          [plan.familiarisation]\npresses = 4\nseconds = 60.0\norders = 1\n\
          [[plan.questionnaire]]\nfile = \"{root}/sessions/questionnaires/acceptance.toml\"\n"
     );
-    fs::write(&session, text).expect("written");
-    session.display().to_string()
+    session_file(folder, &settings)
 }
 
 /// A session file with gaze over TCP on a port of its own, and where to connect.

@@ -140,7 +140,10 @@ fn parts_that_do_not_make_one_study_are_refused() {
     let again = changed(&one, &folder.join("again.jsonl"), |text| {
         text.replacen("\"shard\":1,", "\"shard\":2,", 1).replace("\"digest\":\"", "\"digest\":\"of another log ")
     });
-    join(&[&one, &again], "a second recording of trial 1 of seed9813-P01 in the plan \"paper\"");
+    join(
+        &[&one, &again],
+        "a second recording of trial 1 of participant P01 (simulated, seed 9813) in the plan \"paper\"",
+    );
     let line_ends = |text: &str| text.match_indices('\n').map(|(at, _)| at + 1).collect::<Vec<usize>>();
     let cut = |text: &str| text[..line_ends(text)[3]].to_string();
     let other = changed(&two, &folder.join("cut.jsonl"), cut);

@@ -134,7 +134,7 @@ fn a_recording_is_written_by_one_program_and_continued_once() {
 }
 
 /// After the alarm: the robot is stopped, the session over, everything that the log had before is there, and verifies.
-fn is_over(terminal: &Terminal, before: &str, recording: &Path) {
+pub fn is_over(terminal: &Terminal, before: &str, recording: &Path) {
     terminal.see("EMERGENCY STOP");
     terminal.see("ENDED EARLY");
     let after = fs::read_to_string(recording.join(LOG_NAME)).expect("a log");
@@ -143,6 +143,11 @@ fn is_over(terminal: &Terminal, before: &str, recording: &Path) {
     assert_eq!(verified(recording)["cut"], true);
     terminal.key("C-c");
     terminal.is_whole(1);
+}
+
+/// The same, where nothing can be written, which is told.
+fn is_over_unwritten(terminal: &Terminal, before: &str, recording: &Path) {
+    is_over(terminal, before, recording);
     terminal.see("a folder that can be written to");
 }
 
@@ -157,7 +162,7 @@ fn check_loss(name: &str, bad: impl FnOnce(&Path)) {
     bad(&recording);
     terminal.see("RECORDING LOST");
     took(&format!("{name}: alarm after"), began.elapsed(), ALARM);
-    is_over(&terminal, &before, &recording);
+    is_over_unwritten(&terminal, &before, &recording);
 }
 
 #[test]
@@ -225,7 +230,7 @@ fn on_a_full_disk_the_stream_goes_first_then_the_session_which_goes_on_when_ther
     let before = terminal.log();
     let _ = fill("filler2");
     terminal.see("RECORDING LOST");
-    is_over(&terminal, &before, &recording);
+    is_over_unwritten(&terminal, &before, &recording);
     fs::remove_file(disk.0.join("filler")).expect("room");
     assert_eq!(verified(&goes_on(&terminal, &recording))["cut"], false);
 }
@@ -240,7 +245,7 @@ fn a_limit_for_files_is_told_as_a_full_disk_is() {
     terminal.begin();
     let before = terminal.log();
     terminal.see("RECORDING LOST");
-    is_over(&terminal, &before, &terminal.recording());
+    is_over_unwritten(&terminal, &before, &terminal.recording());
 }
 
 #[test]

@@ -8,7 +8,7 @@ use super::paint::Painter;
 use super::regions::{PanelAreas, inside};
 use super::theme::TextRole;
 use crate::console::chord::KeyChord;
-use crate::console::console_model::{ConsoleModel, Dialog};
+use crate::console::console_model::{ConsoleModel, Dialog, ReplayAction};
 use crate::console::form;
 use crate::console::key_action::{KeyAction, KeyBinding, ManualAction};
 use crate::console::lists::{self, ListCursor, OTHER_REASON, Picker};
@@ -42,7 +42,7 @@ pub fn draw(brush: &mut Painter, screen: Rect, regions: &PanelAreas, session: &S
         }
         Some(Dialog::Answer(line)) => answer(brush, screen, session, line),
         Some(Dialog::Help(effects)) => help::draw(brush, screen, model, effects),
-        Some(Dialog::Difference(lines)) => difference(brush, screen, lines),
+        Some(Dialog::Details(title, lines)) => details(brush, screen, title, lines),
         Some(Dialog::Report(lines)) => report(brush, screen, lines, model),
         Some(Dialog::EndTrial) => {
             let yes = yes_keys(model, &KeyAction::EndTrial);
@@ -94,7 +94,7 @@ fn ask(brush: &mut Painter, screen: Rect, title: &str, lines: &[&str], yes: &str
     brush.hints(inside.x + 2, inside.bottom() - 1, inside.width - 3, &hints);
 }
 
-fn difference(brush: &mut Painter, screen: Rect, lines: &[String]) {
+fn details(brush: &mut Painter, screen: Rect, title: &str, lines: &[String]) {
     let columns = (screen.width - 4).min(100);
     let wrapped: Vec<(bool, String)> = lines
         .iter()
@@ -102,7 +102,7 @@ fn difference(brush: &mut Painter, screen: Rect, lines: &[String]) {
         .flat_map(|(index, line)| wrap(line, columns - 4).into_iter().map(move |line| (index == 0, line)))
         .collect();
     let rows = wrapped.len() as u16 + 2;
-    let inside = open(brush, screen, (columns, rows), "What wizard and assistant knew", "any key closes");
+    let inside = open(brush, screen, (columns, rows), title, "any key closes");
     for (row, (is_head, line)) in wrapped.iter().enumerate().take(usize::from(inside.height)) {
         let role = if *is_head { TextRole::Strong } else { TextRole::Text };
         brush.text(inside.x + 1, inside.y + row as u16, inside.width - 2, line, role);
@@ -296,6 +296,8 @@ struct ListPage<'a> {
     rows: Vec<Row>,
     /// Number of rows of the list before filtering.
     all: usize,
+    /// What is said where no row matches the filter.
+    none: &'a str,
     /// What typing does.
     types: &'a str,
     /// Keys that select a row.
@@ -324,6 +326,7 @@ pub fn draw_answers(brush: &mut Painter, screen: Rect, session: &Session, picker
         cursor: &picker.cursor,
         rows,
         all,
+        none: "no entry matches",
         types: if takes_words { "type to filter, or a reason in words: " } else { TYPE },
         selects: if is_filtered { "up/down" } else { &digits },
         space: if takes_words && is_filtered { "space types a space" } else { STOPS },
@@ -345,22 +348,34 @@ pub fn draw_palette(brush: &mut Painter, screen: Rect, session: &Session, model:
     };
     let rows = match lists::place(model, cursor) {
         Some((_, label)) => vec![Row { number: String::new(), label, remark: String::new(), counts: true }],
-        None => lists::actions(model, cursor).iter().map(row).collect(),
+        None => {
+            let event = |(_, words): &(ReplayAction, String)| Row {
+                number: String::new(),
+                label: words.clone(),
+                remark: String::new(),
+                counts: true,
+            };
+            let events = lists::events(model, cursor).into_iter().map(event);
+            lists::actions(model, cursor).iter().map(row).chain(events).collect()
+        }
     };
     let all = lists::actions(model, &ListCursor::default());
     let has_signals = all.iter().any(|line| matches!(line.action, KeyAction::Signal(..)));
     let takes = if has_signals { "run action (signal: show key)" } else { "run the action" };
     let is_replay = all.iter().any(|line| matches!(line.action, KeyAction::Move(_)));
-    let types = if is_replay { "type to filter, or 2:13, or error 7: " } else { TYPE };
+    let types = if is_replay { "type words, or 2:13, or error 7: " } else { TYPE };
     let space = if model.playback.is_none() { STOPS } else { "" };
     let title = "All actions".to_string();
-    ListPage { title, cursor, rows, all: all.len(), types, selects: "up/down", space, takes }.draw(brush, screen);
+    let told = model.playback.as_ref().map_or(0, |playback| playback.told.len());
+    let (all, none) = (all.len() + told, if told > 0 { "no such command or event" } else { "no such command" });
+    ListPage { title, cursor, rows, all, none, types, selects: "up/down", space, takes }.draw(brush, screen);
 }
 
 impl ListPage<'_> {
     fn draw(&self, brush: &mut Painter, screen: Rect) {
         // The height of the list stays the same while the filter changes.
-        let size = (MOST.0.min(screen.width), (self.all as u16 + AROUND).min(MOST.1).min(screen.height));
+        let rows = self.all.min(usize::from(MOST.1)) as u16 + AROUND;
+        let size = (MOST.0.min(screen.width), rows.min(MOST.1).min(screen.height));
         let inside = open(brush, screen, size, &self.title, self.space);
         let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
         let typed = format!("{}_", self.cursor.filter);
@@ -376,7 +391,8 @@ impl ListPage<'_> {
             brush.target(cells, ClickAction::Row(first + line));
         }
         if self.rows.is_empty() {
-            brush.text(list.x, list.y, list.width, "no entry matches; bksp deletes a letter", TextRole::Quiet);
+            let none = format!("{}; bksp deletes a letter", self.none);
+            brush.text(list.x, list.y, list.width, &none, TextRole::Quiet);
         }
         let [enter, esc] = [KeyCode::Enter, KeyCode::Esc].map(|code| Some(KeyChord::plain(code)));
         let hints = [(self.selects, "select", None), ("enter", self.takes, enter), ("esc", "back", esc)];

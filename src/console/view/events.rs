@@ -75,7 +75,12 @@ fn rows(
 
 /// Draws an entry in the first lines; returns the number of lines, two if the reason of an error needs one of its own.
 fn row(brush: &mut Painter, line: Rect, session: &Session, model: &ConsoleModel, entry: &TimelineEntry) -> u16 {
-    let at = (session.trial_clock(model.now) - session.age(entry.time, model.now)).to_string();
+    let at = session.trial_clock(model.now) - session.age(entry.time, model.now);
+    // Who reads a recording asks what came first within a second.
+    let (clock, at) = match model.playback.is_some() && model.lesson.is_none() {
+        true => (CLOCK + 1, at.with_tenths()),
+        false => (CLOCK, at.to_string()),
+    };
     let (who, what) = event_words::happening(&session.kitchen, &entry.what);
     let role = match &entry.what {
         TimelineEvent::Press { agent: Agent::Human, .. } => TextRole::Human,
@@ -87,8 +92,8 @@ fn row(brush: &mut Painter, line: Rect, session: &Session, model: &ConsoleModel,
         TimelineEvent::Noted(Event::RobotTouched { .. }) => TextRole::Robot,
         _ => TextRole::Strong,
     };
-    brush.text_right(line.x + CLOCK - 1, line.y, CLOCK - 1, &at, TextRole::Quiet);
-    let x = line.x + CLOCK;
+    brush.text_right(line.x + clock - 1, line.y, clock - 1, &at, TextRole::Quiet);
+    let x = line.x + clock;
     brush.text(x, line.y, WHO - 1, who, role);
     let x = x + WHO;
     let columns = line.right().saturating_sub(x + 1);
@@ -111,7 +116,7 @@ fn row(brush: &mut Painter, line: Rect, session: &Session, model: &ConsoleModel,
         brush.text(end, line.y, (x + columns).saturating_sub(end), &error.why, TextRole::Strong);
         return 1;
     }
-    let x = line.x + CLOCK;
+    let x = line.x + clock;
     brush.text(x, line.y + 1, line.right().saturating_sub(x + 1), &error.why, TextRole::Strong);
     2
 }

@@ -13,7 +13,7 @@ use crate::console::console_model::{ConsoleModel, Dialog, Notice, NoticeLevel, P
 use crate::console::interventions::can_redo;
 use crate::console::key_action::{KeyAction, KeyBinding, KeyLayer, ManualAction, RaterAction, ViewAction};
 use crate::console::mouse::ClickAction;
-use crate::console::panels::{is_away, opens_difference};
+use crate::console::panels::{cut_landmark, is_away, opens_difference};
 use crate::console::possible::is_possible;
 use crate::console::text_columns::{width, wrap_to};
 use tomcom_session::history::{event_words, wording};
@@ -160,7 +160,9 @@ pub fn message(brush: &mut Painter, regions: &PanelAreas, session: &Session, mod
         brush.styled(area.x + 1, area.y, area.width - 1, &format!(" {} ", notice.text), style);
     } else if let Some((_, landmark)) = model.playback.as_ref().and_then(Playback::stands_at) {
         let (columns, ellipsis) = (area.width.saturating_sub(3), brush.theme.signs().ellipsis);
-        for (row, line) in wrap_to(landmark, columns, area.height, ellipsis).iter().enumerate() {
+        let open = cut_landmark(model, session).and(model.keys.chord_for(&KeyAction::Look(ViewAction::Open)));
+        let ellipsis = open.map_or(ellipsis.to_string(), |open| format!("{ellipsis} {open} shows all"));
+        for (row, line) in wrap_to(landmark, columns, area.height, &ellipsis).iter().enumerate() {
             brush.text(area.x + 2, area.y + row as u16, columns, line, TextRole::Strong);
         }
     } else if session.robot.stopped && !session.robot.is_stopped_by_wizard() {
@@ -236,10 +238,13 @@ fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -
         KeyAction::Manual(ManualAction::NoteInWords) if session.is_running() => Some("mark"),
         KeyAction::Manual(ManualAction::HoldRobot) if session.robot.held && !is_over => Some("release robot"),
         // Where nothing is to be undone, one step back leaves; live, the key that quits says so.
-        KeyAction::Look(ViewAction::All) if !is_away(model) => model.playback.as_ref().map(|_| "leave"),
+        KeyAction::Look(ViewAction::All) if !is_away(model) => {
+            let is_saved = model.coding.as_ref().is_some_and(|coding| coding.is_saved);
+            model.playback.as_ref().map(|_| if is_saved { "leave (saved)" } else { "leave" })
+        }
         KeyAction::Look(ViewAction::Open) if opens_difference(model) => Some("difference"),
+        KeyAction::Look(ViewAction::Open) if cut_landmark(model, session).is_some() => Some("whole text"),
         KeyAction::Quit if is_over && session.is_step_done() => Some("close the session"),
-        KeyAction::Quit if model.coding.as_ref().is_some_and(|coding| coding.is_saved) => Some("quit (saved)"),
         // After the trial the robot rests, and the line of key hints offers only the next step.
         KeyAction::StopRobot
         | KeyAction::ResumeRobot

@@ -104,7 +104,7 @@ fn too_small(brush: &mut Painter, session: &Session, model: &ConsoleModel) {
         Some(Dialog::Note(_)) => "Note: enter saves it, esc cancels",
         Some(Dialog::Reason(..)) => "Words beside the reason: enter gives it, esc goes back",
         Some(Dialog::Answer(_)) => "Answer: enter saves it, esc cancels",
-        Some(Dialog::Difference(_)) => "The terminal is too small for the details; any key closes them",
+        Some(Dialog::Details(..)) => "The terminal is too small for the details; any key closes them",
         Some(Dialog::Report(_)) => "The terminal is too small for the training report; enter continues",
         None => return,
     };

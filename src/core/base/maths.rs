@@ -1,4 +1,4 @@
-//! Sets of bits, and the beta distribution.
+//! Sets of bits, the beta distribution, and the curve of a motion.
 
 use statrs::function::beta::beta_reg;
 
@@ -10,6 +10,12 @@ pub fn ones(mut bits: u32) -> impl Iterator<Item = usize> {
         bits &= bits.wrapping_sub(1);
         (position < u32::BITS).then_some(position as usize)
     })
+}
+
+/// Share of the way that a motion has covered after this share of its time, where its speed and acceleration begin and end
+/// at 0: the quintic polynomial from 0 to 1, which also has the smallest jerk.
+pub fn eased(share: f64) -> f64 {
+    share.powi(3) * (10.0 - 15.0 * share + 6.0 * share * share)
 }
 
 /// I_x(a, b): the probability that a variate of the beta distribution with parameters `a` and `b` is at most `x`, between

@@ -38,6 +38,11 @@ impl SessionTime {
         self.0 / 1_000_000
     }
 
+    /// To the tenth of a second: `6:42.3`.
+    pub fn with_tenths(self) -> String {
+        format!("{self}.{}", self.ms() / 100 % 10)
+    }
+
     /// To the millisecond: `6:42.305`.
     pub fn with_ms(self) -> String {
         format!("{self}.{:03}", self.ms() % 1000)

@@ -104,8 +104,8 @@ impl HighlightSet {
 /// The signal about each location, from which wizard, ToM-Com and ToM choose, in the order of the locations: recipes
 /// for orders, and highlights for those of the other locations that may be highlighted.
 pub fn signals(kitchen: &Kitchen, highlights: HighlightSet) -> Vec<(LocationId, Signal)> {
-    let signal = |index: usize| {
-        let (id, location) = (LocationId(index as u8), &kitchen.locations[index]);
+    let signal = |id: LocationId| {
+        let location = kitchen.location(id);
         let signal = match location.kind {
             LocationKind::Order => Signal::ShowRecipe(location.name.clone()),
             _ if highlights.holds(id) => Signal::Highlight(location.name.clone()),
@@ -113,7 +113,7 @@ pub fn signals(kitchen: &Kitchen, highlights: HighlightSet) -> Vec<(LocationId, 
         };
         Some((id, signal))
     };
-    (0..kitchen.locations.len()).filter_map(signal).collect()
+    kitchen.location_ids().filter_map(signal).collect()
 }
 
 /// The signals that can be sent in this state of the kitchen.

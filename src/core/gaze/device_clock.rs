@@ -44,7 +44,7 @@ pub struct DeviceClock {
     arrived: Option<SessionTime>,
     check: StampCheck,
     /// The last verdict about the stamps; `None` before the first one.
-    verdict: Option<StampVerdict>,
+    verdict: Option<Result<(), StampFault>>,
 }
 
 /// What a gaze sample shows about the tracker's clock.
@@ -52,10 +52,9 @@ pub struct DeviceClock {
 pub enum ClockNews {
     /// The tracker's clock was set.
     Set(ClockStep),
-    /// The time stamps cannot be used from now on: samples count as taken when they arrived.
-    Faulty(StampFault),
-    /// The time stamps are those of a clock.
-    Sound,
+    /// Whether the time stamps are those of a clock, from now on; where they are not, samples count as taken when they
+    /// arrived.
+    Stamps(Result<(), StampFault>),
 }
 
 /// A step of the eye tracker's clock: the clock was set during the session.
@@ -107,7 +106,7 @@ impl DeviceClock {
 
     /// Whether the time stamps cannot be used.
     pub fn is_faulty(&self) -> bool {
-        matches!(self.verdict, Some(StampVerdict::Faulty(_)))
+        self.verdict.is_some_and(|verdict| verdict.is_err())
     }
 
     fn offset(&self) -> Option<i128> {
@@ -115,10 +114,10 @@ impl DeviceClock {
     }
 
     /// Takes over a verdict about the stamps; returns whether the verdict is new.
-    fn judge(&mut self, verdict: StampVerdict) -> Option<ClockNews> {
+    fn judge(&mut self, verdict: Result<(), StampFault>) -> Option<ClockNews> {
         let is_same = match (self.verdict, verdict) {
             // A rate is estimated anew with every interval; only another one is news.
-            (Some(StampVerdict::Faulty(StampFault::Rate(told))), StampVerdict::Faulty(StampFault::Rate(rate))) => {
+            (Some(Err(StampFault::Rate(told))), Err(StampFault::Rate(rate))) => {
                 (rate - told).abs() <= 0.5 * told.abs().max(1.0)
             }
             (known, verdict) => known == Some(verdict),
@@ -128,13 +127,10 @@ impl DeviceClock {
         }
         let was_faulty = self.is_faulty();
         self.verdict = Some(verdict);
-        if was_faulty || verdict != StampVerdict::Sound {
+        if was_faulty || verdict.is_err() {
             self.forget();
         }
-        Some(match verdict {
-            StampVerdict::Sound => ClockNews::Sound,
-            StampVerdict::Faulty(fault) => ClockNews::Faulty(fault),
-        })
+        Some(ClockNews::Stamps(verdict))
     }
 
     fn forget(&mut self) {
@@ -299,12 +295,6 @@ impl StampFault {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum StampVerdict {
-    Sound,
-    Faulty(StampFault),
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
 struct StampInterval {
     began: SessionTime,
     /// Smallest clock offset of the interval in nanoseconds, and the arrival of its sample; stamps that differ from both of
@@ -342,7 +332,7 @@ pub(super) struct StampCheck {
 
 impl StampCheck {
     /// Adds a sample; returns a verdict if the samples up to now allow one.
-    pub fn take(&mut self, device_ns: i64, arrived: SessionTime) -> Option<StampVerdict> {
+    pub fn take(&mut self, device_ns: i64, arrived: SessionTime) -> Option<Result<(), StampFault>> {
         let offset = i128::from(arrived.0) - i128::from(device_ns);
         let is_over = |last: &StampInterval| arrived.secs_since(last.began) >= INTERVAL_S;
         let verdict = if self.intervals.back().is_none_or(is_over) { self.begin(offset, arrived) } else { None };
@@ -367,13 +357,13 @@ impl StampCheck {
         interval.far_back += u32::from(back > ns(TOO_OLD_S));
         interval.stands |= stands;
         match stands {
-            true => Some(StampVerdict::Faulty(StampFault::StandsStill)),
+            true => Some(Err(StampFault::StandsStill)),
             false => verdict,
         }
     }
 
     /// Begins an interval; returns the verdict about the intervals before it.
-    fn begin(&mut self, first: i128, began: SessionTime) -> Option<StampVerdict> {
+    fn begin(&mut self, first: i128, began: SessionTime) -> Option<Result<(), StampFault>> {
         let verdict = self.verdict(began);
         while self.intervals.front().is_some_and(|one| began.secs_since(one.began) > GROUP_S * GROUPS as f64) {
             self.intervals.pop_front();
@@ -383,7 +373,7 @@ impl StampCheck {
         verdict
     }
 
-    fn verdict(&self, now: SessionTime) -> Option<StampVerdict> {
+    fn verdict(&self, now: SessionTime) -> Option<Result<(), StampFault>> {
         let in_group = |group: usize| {
             let age = move |one: &&StampInterval| (now.secs_since(one.began) / GROUP_S).ceil() as usize == group;
             self.intervals.iter().filter(age)
@@ -392,7 +382,7 @@ impl StampCheck {
         let (samples, back, far_back) = (count(|one| one.samples), count(|one| one.back), count(|one| one.far_back));
         let is_more = |part: u32, share: f64| samples >= BACK && f64::from(part) > share * f64::from(samples);
         if is_more(back, BACK_SHARE) {
-            return Some(StampVerdict::Faulty(StampFault::GoesBack));
+            return Some(Err(StampFault::GoesBack));
         }
         let newest = self.intervals.range(self.intervals.len().saturating_sub(FEW)..);
         let few: Vec<OffsetPoint> = newest.filter_map(|one| point([one])).collect();
@@ -402,15 +392,15 @@ impl StampCheck {
         if let Some(change) = few_change.or_else(|| change(&groups).filter(|_| groups.len() == GROUPS)) {
             let rate = 1.0 - change;
             let fault = if rate < 0.0 { StampFault::GoesBack } else { StampFault::Rate(rate) };
-            return Some(StampVerdict::Faulty(fault));
+            return Some(Err(fault));
         }
         // In a finer unit than seconds, samples that a network mixed up go far back, too; their rate is found first.
         if self.intervals.len() > FEW && is_more(far_back, FAR_BACK_SHARE) {
-            return Some(StampVerdict::Faulty(StampFault::GoesBack));
+            return Some(Err(StampFault::GoesBack));
         }
         let is_ordered = self.intervals.iter().all(|one| !one.stands && one.far_back == 0);
         let is_sound = groups.len() == GROUPS && is_ordered && mean_change(&groups)?.abs() <= SOUND_RATE;
-        is_sound.then_some(StampVerdict::Sound)
+        is_sound.then_some(Ok(()))
     }
 
     /// Mean delay of samples beyond the shortest one, in seconds, in the last intervals that were over at this time;

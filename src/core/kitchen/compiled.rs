@@ -75,6 +75,11 @@ impl Kitchen {
         locations.filter(move |&location| before.code(location) != after.code(location))
     }
 
+    /// The state aspects of this kitchen.
+    pub fn aspect_ids(&self) -> impl Iterator<Item = AspectId> + Clone + use<> {
+        (0..self.aspects.len()).map(|index| AspectId(index as u8))
+    }
+
     /// The locations of this kitchen.
     pub fn location_ids(&self) -> impl Iterator<Item = LocationId> + Clone + use<> {
         (0..self.locations.len()).map(|index| LocationId(index as u8))

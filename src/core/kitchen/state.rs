@@ -3,6 +3,7 @@
 
 use super::compiled::Kitchen;
 use super::parts::{Agent, AspectId, ButtonId, ContentId, DishId, LocationId};
+use crate::base::rng::mix;
 
 /// Largest number of locations in a kitchen.
 pub const MAX_LOCATIONS: usize = 16;
@@ -147,6 +148,13 @@ impl World {
     /// The world with an empty kitchen and the true recipes, from which a hypothesis is built.
     pub fn empty(kitchen: &Kitchen) -> World {
         World::with_true_recipes(kitchen, kitchen.empty_state())
+    }
+
+    /// The world in 64 bits, for hash tables.
+    #[inline]
+    pub(crate) fn folded(&self) -> u64 {
+        let fold = |bits: u128| mix(bits as u64 ^ mix((bits >> 64) as u64));
+        fold(self.state.bits()) ^ fold(self.recipes.bits())
     }
 
     /// Sets a state aspect of the world to the value with this index.

@@ -240,28 +240,29 @@ impl FalseBeliefDetection {
         let recent = |press: &BeliefsBeforePress, aspect: usize| {
             press.since_change_s.get(aspect).map(|since_s| since_s.map_or(0.0, |since_s: f64| 1.0 / (1.0 + since_s)))
         };
-        let both: Vec<usize> = (0..kitchen.aspects.len()).collect();
+        let all: Vec<usize> = (0..kitchen.aspects.len()).collect();
         let pool = |of: &[usize], score: Score| auc(&scored(trials, of, score));
         let of_groups = groups.each_ref().map(|group| pool(group, &predicted));
-        let predictions = scored(trials, &both, &predicted);
+        let predictions = scored(trials, &all, &predicted);
         let calibration = Calibration::from_predictions(predictions, CALIBRATED, CALIBRATION_BINS);
         let aspect = |&index: &usize| {
             let known: Vec<bool> = trials.iter().flatten().filter_map(|press| press.is_wrong(index)).collect();
             let wrong = known.iter().filter(|&&wrong| wrong).count() as f64 / known.len().max(1) as f64;
             AspectAuc { aspect: kitchen.aspects[index].name.clone(), auc: pool(&[index], &predicted), wrong }
         };
+        let aspects: Vec<AspectAuc> = all.iter().map(aspect).collect();
         FalseBeliefDetection {
             auc: mean(of_groups.into_iter().flatten()),
             auc_locations: of_groups[0],
             auc_recipes: of_groups[1],
             auc_baseline: pool(&groups[0], &changed),
             auc_recency: pool(&groups[0], &recent),
-            auc_mean_of_aspects: mean(both.iter().filter_map(|&one| pool(&[one], &predicted))),
+            auc_mean_of_aspects: mean(aspects.iter().filter_map(|aspect| aspect.auc)),
             flags: thresholds
                 .map_or_else(FlagPerformance::default, |choice| FlagPerformance::from_trials(trials, &groups, choice)),
             ece: calibration.ece,
             calibration,
-            aspects: both.iter().map(aspect).collect(),
+            aspects,
         }
     }
 }
@@ -278,13 +279,9 @@ pub(super) fn scored(trials: &[TrialBeliefs], aspects: &[usize], score: Score) -
 
 /// The indices of a kitchen's aspects in two groups: locations, recipes.
 pub fn aspect_groups(kitchen: &Kitchen) -> AspectGroups {
-    [aspects(kitchen, false), aspects(kitchen, true)]
-}
-
-/// The indices of the aspects that are recipes, or, with `recipes` false, of the aspects that are locations.
-fn aspects(kitchen: &Kitchen, recipes: bool) -> Vec<usize> {
-    let is_recipe = |index: &usize| matches!(kitchen.aspects[*index].kind, AspectKind::Recipe(_));
-    (0..kitchen.aspects.len()).filter(|index| is_recipe(index) == recipes).collect()
+    let is_location = |index: &usize| matches!(kitchen.aspects[*index].kind, AspectKind::Location(_));
+    let (locations, recipes) = (0..kitchen.aspects.len()).partition(is_location);
+    [locations, recipes]
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {

@@ -165,7 +165,7 @@ pub struct MatchCounts {
     /// Time from the second list's communication to the first list's communication, in seconds, by matched pair.
     leads_s: Vec<f64>,
     /// Contingency table of communication contents per press, first list by second list.
-    units: BTreeMap<(Option<ComparedContent>, Option<ComparedContent>), u64>,
+    units: Units,
 }
 
 impl MatchCounts {

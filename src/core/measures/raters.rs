@@ -204,6 +204,13 @@ impl RaterCodes {
         let same = self.0.iter().filter(|(press, code)| other.0.get(press) == Some(code));
         RaterCodes(same.map(|(press, code)| (*press, code.clone())).collect())
     }
+
+    /// The disagreements of two raters, which they settle: the errors that both coded, each with another code. What only
+    /// one of them coded is no disagreement: the other codes it alone.
+    pub fn disagreements(&self, other: &RaterCodes) -> Vec<u64> {
+        let by_both = self.0.iter().filter_map(|(press, code)| Some((*press, code, other.0.get(press)?)));
+        by_both.filter(|(_, one, other)| one != other).map(|(press, ..)| press).collect()
+    }
 }
 
 /// Contingency table of two raters' codes over the errors that both raters coded; recordings are added to the table.
@@ -322,12 +329,8 @@ impl RaterConsensus {
     }
 
     /// Adds the errors that both raters coded alike.
-    pub fn with_agreed(mut self, codes: [&RaterCodes; 2]) -> RaterConsensus {
-        for (press, code) in codes[0].agreed(codes[1]).0 {
-            let from = [Some(code.clone()), Some(code.clone())];
-            self.settled.insert(press, ConsensusCode { code, from });
-        }
-        self
+    pub fn with_agreed(self, codes: [&RaterCodes; 2]) -> RaterConsensus {
+        self.with_decided(&codes[0].agreed(codes[1]), codes)
     }
 
     /// Adds codes that the two raters decided together; `codes` are the raters' own codes at that time.
@@ -380,16 +383,6 @@ impl ConsensusCode {
         let overrules = one.is_some() && one == other && one.as_ref() != Some(&self.code);
         overrules.then_some("the code that both raters gave: what they agree on needs no other decision")
     }
-}
-
-/// The errors that two raters still have to settle: the raters' codes differ, or one of the codes is missing.
-pub fn unsettled(errors: &[u64], codes: [&RaterCodes; 2]) -> Vec<u64> {
-    let [one, other] = codes;
-    let differs = |press: &u64| match (one.0.get(press), other.0.get(press)) {
-        (Some(a), Some(b)) => a != b,
-        _ => true,
-    };
-    errors.iter().copied().filter(differs).collect()
 }
 
 /// Two raters with their codes of one recording. The raters are in alphabetical order, which has no meaning.

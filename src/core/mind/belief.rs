@@ -19,12 +19,12 @@ pub struct Belief {
 impl Belief {
     /// The belief that gives probability 1 to the true value of every state aspect.
     pub fn of_truth(kitchen: &Kitchen, state: State) -> Belief {
-        let point = |index: usize| {
-            let mut values = vec![0.0; kitchen.aspects[index].values.len()];
-            values[kitchen.true_value(state, AspectId(index as u8))] = 1.0;
+        let point = |aspect: AspectId| {
+            let mut values = vec![0.0; kitchen.aspects[aspect.index()].values.len()];
+            values[kitchen.true_value(state, aspect)] = 1.0;
             values
         };
-        Belief { of: (0..kitchen.aspects.len()).map(point).collect() }
+        Belief { of: kitchen.aspect_ids().map(point).collect() }
     }
 
     /// The belief that a simulated participant recorded, for the kitchen in `state`: listed values keep their recorded

@@ -3,14 +3,15 @@
 use std::io::{BufRead, BufReader, Read};
 use std::process::{ChildStderr, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::Duration;
 
-use tomcom_session::external::{MindConnection, MindWriter};
+use tomcom_session::external::MindConnection;
 
 use super::lines::{LineReceiver, LineSender};
 use crate::child_process::ChildProcess;
+use crate::lock;
 
 /// Time in which a child ends by itself after it was told that the trial is over.
 const ENDS_WITHIN: Duration = Duration::from_secs(1);
@@ -19,30 +20,6 @@ const EXPLAINED_WITHIN: Duration = Duration::from_millis(500);
 const STEP: Duration = Duration::from_millis(5);
 /// Longest line of a child's error output that is told, in bytes.
 const LONGEST_WORDS: u64 = 2048;
-
-/// The way to a child, which is ended with it.
-#[derive(Debug)]
-struct ChildWriter {
-    lines: LineSender,
-    /// The child ends with the writer: why it ended is looked up only while it is there.
-    child: Arc<Mutex<Option<ChildProcess>>>,
-}
-
-impl MindWriter for ChildWriter {
-    fn send(&mut self, line: String) -> Result<(), String> {
-        self.lines.send(line)
-    }
-}
-
-impl Drop for ChildWriter {
-    fn drop(&mut self) {
-        self.lines.close();
-        let child = self.child.lock().unwrap_or_else(PoisonError::into_inner).take();
-        if let Some(mut child) = child {
-            child.ends_within(ENDS_WITHIN);
-        }
-    }
-}
 
 pub(super) fn start(command: &str) -> Result<MindConnection, String> {
     let mut shell = Command::new("sh");
@@ -55,12 +32,18 @@ pub(super) fn start(command: &str) -> Result<MindConnection, String> {
     else {
         return Err("it has no pipes".to_string());
     };
+    // The child ends with the way to it: why it ended is looked up only while it is there.
     let child = Arc::new(Mutex::new(Some(process)));
     let words = last_words(stderr);
     let ended = child.clone();
-    let why = move || explained(&ended, &words);
-    let from = LineReceiver::start(stdout, why);
-    Ok(MindConnection { to: Box::new(ChildWriter { lines: LineSender::start(stdin), child }), from: Box::new(from) })
+    let from = LineReceiver::start(stdout, move || explained(&ended, &words));
+    let to = LineSender::start(stdin, move || {
+        let child = lock(&child).take();
+        if let Some(mut child) = child {
+            child.ends_within(ENDS_WITHIN);
+        }
+    });
+    Ok(MindConnection { to: Box::new(to), from: Box::new(from) })
 }
 
 /// The last line of a child's error output, once that output has ended.
@@ -91,7 +74,7 @@ fn explained(child: &Mutex<Option<ChildProcess>>, words: &Receiver<String>) -> S
     let mut waited = Duration::ZERO;
     let status = loop {
         // The lock is not held for long: whoever ends the session needs it.
-        let mut child = child.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut child = lock(child);
         let status = child.as_mut().and_then(|child| child.child().try_wait().ok()).flatten();
         if status.is_some() || child.is_none() || waited >= EXPLAINED_WITHIN {
             break status;

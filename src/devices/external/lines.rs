@@ -1,23 +1,27 @@
 //! Lines out and in, each on a thread of its own with a bounded queue.
 
+use std::fmt;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
 use std::thread;
 use std::time::Duration;
 
-use tomcom_session::external::{LONGEST_LINE, MindNews, MindReader};
+use tomcom_session::external::{LONGEST_LINE, MindNews, MindReader, MindWriter};
 
 /// Number of lines that wait to be read by the program, or to be taken from it.
 const QUEUE: usize = 64;
 /// Tells the program that the trial is over.
 const END: &str = "{\"ask\":\"end\"}";
 
-/// Lines on their way to a program.
-#[derive(Debug)]
-pub(super) struct LineSender(Option<SyncSender<String>>);
+/// Lines on their way to a program. Dropping it says that the trial is over, closes the way, and ends the program.
+pub(super) struct LineSender {
+    lines: Option<SyncSender<String>>,
+    end: Option<Box<dyn FnOnce() + Send>>,
+}
 
 impl LineSender {
-    pub fn start(mut to: impl Write + Send + 'static) -> LineSender {
+    /// `end`: ends the program, once the way to it is closed.
+    pub fn start(mut to: impl Write + Send + 'static, end: impl FnOnce() + Send + 'static) -> LineSender {
         let (sender, lines) = sync_channel::<String>(QUEUE);
         thread::spawn(move || {
             for mut line in lines {
@@ -28,21 +32,33 @@ impl LineSender {
                 }
             }
         });
-        LineSender(Some(sender))
+        LineSender { lines: Some(sender), end: Some(Box::new(end)) }
     }
+}
 
-    pub fn send(&self, line: String) -> Result<(), String> {
-        match self.0.as_ref().map(|sender| sender.try_send(line)) {
+impl fmt::Debug for LineSender {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        formatter.debug_struct("LineSender").finish_non_exhaustive()
+    }
+}
+
+impl MindWriter for LineSender {
+    fn send(&mut self, line: String) -> Result<(), String> {
+        match self.lines.as_ref().map(|sender| sender.try_send(line)) {
             Some(Ok(())) => Ok(()),
             Some(Err(TrySendError::Full(_))) => Err(format!("it leaves {QUEUE} questions unread")),
             Some(Err(TrySendError::Disconnected(_))) | None => Err("it no longer reads".to_string()),
         }
     }
+}
 
-    /// Says that the trial is over, and closes the way.
-    pub fn close(&mut self) {
-        if let Some(sender) = self.0.take() {
+impl Drop for LineSender {
+    fn drop(&mut self) {
+        if let Some(sender) = self.lines.take() {
             let _ = sender.try_send(END.to_string());
+        }
+        if let Some(end) = self.end.take() {
+            end();
         }
     }
 }

@@ -3,32 +3,12 @@
 use std::net::{Shutdown, SocketAddr, TcpStream};
 use std::time::Duration;
 
-use tomcom_session::external::{MindConnection, MindWriter};
+use tomcom_session::external::MindConnection;
 
 use super::lines::{LineReceiver, LineSender};
 
 /// Longest time to connect.
 const CONNECTS_WITHIN: Duration = Duration::from_secs(2);
-
-/// The way to a peer; its socket is closed with it.
-#[derive(Debug)]
-struct PeerWriter {
-    lines: LineSender,
-    socket: TcpStream,
-}
-
-impl MindWriter for PeerWriter {
-    fn send(&mut self, line: String) -> Result<(), String> {
-        self.lines.send(line)
-    }
-}
-
-impl Drop for PeerWriter {
-    fn drop(&mut self) {
-        self.lines.close();
-        let _ = self.socket.shutdown(Shutdown::Read);
-    }
-}
 
 pub(super) fn connect(address: &str) -> Result<MindConnection, String> {
     let wanted: SocketAddr = address
@@ -40,7 +20,7 @@ pub(super) fn connect(address: &str) -> Result<MindConnection, String> {
     let socket = TcpStream::connect_timeout(&wanted, CONNECTS_WITHIN).map_err(|error| error.to_string())?;
     let copy = || socket.try_clone().map_err(|error| error.to_string());
     let _ = socket.set_nodelay(true);
-    let (to, from) = (LineSender::start(copy()?), copy()?);
-    let from = LineReceiver::start(from, || "it closed the connection".to_string());
-    Ok(MindConnection { to: Box::new(PeerWriter { lines: to, socket }), from: Box::new(from) })
+    let from = LineReceiver::start(copy()?, || "it closed the connection".to_string());
+    let to = LineSender::start(copy()?, move || drop(socket.shutdown(Shutdown::Read)));
+    Ok(MindConnection { to: Box::new(to), from: Box::new(from) })
 }

@@ -11,7 +11,7 @@ use std::{io, thread};
 use tokio::sync::mpsc::{Receiver, Sender, channel};
 
 use super::library::{DiscoveredLslStream, LslInletHandle, LslLibrary, LslStreamWatch};
-use super::{described, gaze_streams, predicate};
+use super::{COMPARE, LslThreadGuard, described, gaze_streams, predicate};
 use crate::compared_clock::{ANSWERS, ClockOffsetEstimator};
 use crate::gaze_input::{TrackerMessage, WAITING};
 use crate::sender_clock::SenderClock;
@@ -24,24 +24,8 @@ const LOOK_S: f64 = 1.0;
 const CONNECT_S: f64 = 5.0;
 /// Longest time for which one wait for a gaze sample lasts, in seconds.
 const SAMPLE_S: f64 = 0.2;
-/// Period of comparing LSL's clock with this computer's.
-const COMPARE: Duration = Duration::from_secs(1);
-/// Longest time for which the program's end waits for the end of the reading thread.
-const END: Duration = Duration::from_secs(2);
 /// Pause before the next attempt to read a gaze stream that could not be read.
 const RETRY: Duration = Duration::from_secs(1);
-
-/// Waits, when it is dropped, for the end of the reading thread, since liblsl must not be in use when the program ends.
-/// The receiver of gaze messages must be dropped before this value.
-#[derive(Debug)]
-pub struct InletThreadGuard(mpsc::Receiver<()>);
-
-impl Drop for InletThreadGuard {
-    fn drop(&mut self) {
-        // An LSL library that hangs does not delay the end of the program beyond the time limit.
-        let _ = self.0.recv_timeout(END);
-    }
-}
 
 /// Reads the gaze stream in a separate thread until the session no longer listens. `display_m` is the size of the
 /// display in metres.
@@ -52,7 +36,7 @@ pub fn follow(
     library: LslLibrary,
     stream: LslGazeSpec,
     display_m: [f64; 2],
-) -> io::Result<(Receiver<TrackerMessage>, InletThreadGuard)> {
+) -> io::Result<(Receiver<TrackerMessage>, LslThreadGuard)> {
     let ((news, heard), (end, ended)) = (channel(WAITING), mpsc::channel());
     let several = Vec::new();
     let mut inlet = GazeInlet { library, stream, display_m, news, lost: 0, complaint: None, several };
@@ -62,7 +46,7 @@ pub fn follow(
         let _ = end.send(());
     };
     thread::Builder::new().name("lsl-gaze".to_string()).spawn(work)?;
-    Ok((heard, InletThreadGuard(ended)))
+    Ok((heard, LslThreadGuard(ended)))
 }
 
 /// Names by which settings can refer to a gaze stream's channels: labels, or numbers for channels without a label.

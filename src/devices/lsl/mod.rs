@@ -12,7 +12,7 @@ mod library;
 mod outlets;
 
 pub use configuration::LslError;
-pub use gaze_inlet::{InletThreadGuard, channel_names, follow, missing_channel};
+pub use gaze_inlet::{channel_names, follow, missing_channel};
 pub use library::{DiscoveredLslStream, LslLibrary};
 pub use outlets::{
     LslCounts, LslSampleConverter, LslSampleValues, LslStreams, MetadataNode, SOURCE, StreamChannel, StreamDescription,
@@ -20,8 +20,27 @@ pub use outlets::{
 };
 
 use std::path::absolute;
+use std::sync::mpsc::Receiver;
+use std::time::Duration;
 
 use tomcom_session::settings::{LslGazeSpec, LslSpec};
+
+/// Longest time for which the program's end waits for the end of a thread that uses liblsl.
+const END: Duration = Duration::from_secs(2);
+/// Period of comparing LSL's clock with this computer's.
+const COMPARE: Duration = Duration::from_secs(1);
+
+/// Waits, when it is dropped, for the end of a thread, since liblsl must not be in use when the program ends. What ends
+/// the thread, the other end of its channel, must be dropped before this value.
+#[derive(Debug)]
+pub struct LslThreadGuard(Receiver<()>);
+
+impl Drop for LslThreadGuard {
+    fn drop(&mut self) {
+        // An LSL library that hangs does not delay the end of the program beyond the time limit.
+        let _ = self.0.recv_timeout(END);
+    }
+}
 
 /// Loads the LSL library that the settings name, or the installed library.
 ///

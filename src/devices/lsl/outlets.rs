@@ -1,10 +1,8 @@
 //! Outgoing streams of the Lab Streaming Layer: what they are, the samples of each event, and the thread that sends them.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
-use std::sync::atomic::AtomicU64;
-use std::sync::atomic::Ordering::Relaxed;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, channel, sync_channel};
+use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -13,7 +11,9 @@ use serde_json::{Map, Value, json};
 use super::configuration::LslError;
 use super::gaze_inlet::compare;
 use super::library::{LslLibrary, LslOutletHandle};
+use super::{COMPARE, LslThreadGuard};
 use crate::compared_clock::{ANSWERS, ClockOffsetEstimator};
+use crate::lock;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::BenefitUnit;
 use tomcom_core::communication::recommendation::Recommendation;
@@ -33,10 +33,6 @@ const BEGIN: Duration = Duration::from_secs(10);
 /// Time for which streams are still offered after their last sample, if a program reads them, since the library sends
 /// from threads of its own.
 const LINGER: Duration = Duration::from_millis(500);
-/// Longest time for which the end of the program waits for the end of the sending thread.
-const END: Duration = Duration::from_secs(2);
-/// Period of comparing LSL's clock with this computer's.
-const COMPARE: Duration = Duration::from_secs(1);
 
 /// Numbers of samples sent over LSL, dropped, and refused.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -48,13 +44,6 @@ pub struct LslCounts {
     pub refused: u64,
 }
 
-#[derive(Debug, Default)]
-struct Counters {
-    sent: AtomicU64,
-    dropped: AtomicU64,
-    refused: AtomicU64,
-}
-
 /// Samples, each with the instant of the event that it describes.
 type Packet = Vec<(Instant, StreamSample)>;
 
@@ -62,10 +51,10 @@ type Packet = Vec<(Instant, StreamSample)>;
 #[derive(Debug)]
 pub struct LslStreams {
     pub descriptions: Vec<StreamDescription>,
-    /// Queue to the sending thread; `None` once no more samples will be sent.
-    packets: Option<SyncSender<Packet>>,
-    counters: Arc<Counters>,
-    done: Receiver<()>,
+    /// Queue to the sending thread, which ends with it.
+    packets: SyncSender<Packet>,
+    counts: Arc<Mutex<LslCounts>>,
+    _thread: LslThreadGuard,
 }
 
 impl LslStreams {
@@ -77,8 +66,8 @@ impl LslStreams {
         let (packets, told) = sync_channel::<Packet>(WAITING);
         let (begun, begins) = channel();
         let (end, done) = channel();
-        let (counters, streams) = (Arc::new(Counters::default()), descriptions.clone());
-        let counted = counters.clone();
+        let (counts, streams) = (Arc::new(Mutex::default()), descriptions.clone());
+        let counted = counts.clone();
         let work = move || {
             let offered = streams.iter().map(|stream| Ok((stream.outlet, library.offer(stream)?)));
             let outlets = match offered.collect::<Result<BTreeMap<_, _>, LslError>>() {
@@ -97,28 +86,21 @@ impl LslStreams {
         };
         thread::Builder::new().name("lsl".to_string()).spawn(work).map_err(|_| LslError::NoThread)?;
         begins.recv_timeout(BEGIN).map_err(|_| LslError::NoThread)??;
-        Ok(LslStreams { descriptions, packets: Some(packets), counters, done })
+        Ok(LslStreams { descriptions, packets, counts, _thread: LslThreadGuard(done) })
     }
 
     /// Queues samples for sending, or drops the samples if the sending thread is too slow.
     pub fn tell(&self, samples: Packet) {
-        let Some(packets) = self.packets.as_ref().filter(|_| !samples.is_empty()) else { return };
-        if let Err(TrySendError::Full(samples) | TrySendError::Disconnected(samples)) = packets.try_send(samples) {
-            self.counters.dropped.fetch_add(samples.len() as u64, Relaxed);
+        if samples.is_empty() {
+            return;
+        }
+        if let Err(TrySendError::Full(samples) | TrySendError::Disconnected(samples)) = self.packets.try_send(samples) {
+            lock(&self.counts).dropped += samples.len() as u64;
         }
     }
 
     pub fn counts(&self) -> LslCounts {
-        let Counters { sent, dropped, refused } = &*self.counters;
-        LslCounts { sent: sent.load(Relaxed), dropped: dropped.load(Relaxed), refused: refused.load(Relaxed) }
-    }
-}
-
-impl Drop for LslStreams {
-    fn drop(&mut self) {
-        self.packets = None;
-        // An LSL library that hangs does not delay the end of the program beyond the time limit.
-        let _ = self.done.recv_timeout(END);
+        *lock(&self.counts)
     }
 }
 
@@ -127,7 +109,7 @@ fn send(
     library: LslLibrary,
     outlets: &BTreeMap<LslOutlet, LslOutletHandle>,
     told: &Receiver<Packet>,
-    counters: &Counters,
+    counts: &Mutex<LslCounts>,
 ) {
     let mut clock = ClockOffsetEstimator::new();
     (0..ANSWERS).for_each(|_| compare(&mut clock, &library));
@@ -148,8 +130,9 @@ fn send(
                 LslSampleValues::Numbers(values) => outlet.push_numbers(values, time_s),
                 LslSampleValues::Texts(values) => outlet.push_texts(values, time_s),
             });
-            let counter = if is_taken { &counters.sent } else { &counters.refused };
-            counter.fetch_add(1, Relaxed);
+            let mut counts = lock(counts);
+            let counter = if is_taken { &mut counts.sent } else { &mut counts.refused };
+            *counter += 1;
         }
     }
 }

@@ -9,7 +9,7 @@ pub(crate) use socket::{PageMessage, PageSocket};
 use std::io;
 use std::net::{IpAddr, SocketAddr};
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
@@ -18,6 +18,7 @@ use tokio::net::TcpListener;
 use tokio::sync::mpsc::Sender;
 
 use crate::connection_table::{ConnectionHandle, ConnectionLimits, ConnectionTable};
+use crate::lock;
 use crate::outer_address::reachable;
 use crate::pairing::{PairingCodeCheck, PairingVerdict, pairing_code};
 
@@ -73,17 +74,13 @@ impl PageDoor {
     /// Time to wait before a pairing code that was typed into a page is to be checked.
     fn pairing_delay(&self, page: &str, typed: &str) -> Duration {
         let Some(check) = &self.pairing else { return Duration::ZERO };
-        let check = check.lock().unwrap_or_else(PoisonError::into_inner);
-        check.delay(Some(page), typed, Instant::now())
+        lock(check).delay(Some(page), typed, Instant::now())
     }
 
     /// Checks a pairing code that was typed into a page. Attempts of all connections are checked one after another.
     fn pair(&self, address: IpAddr, page: &str, typed: &str) -> PairingVerdict {
         match &self.pairing {
-            Some(check) => {
-                let mut check = check.lock().unwrap_or_else(PoisonError::into_inner);
-                check.attempt(address, Some(page), typed, Instant::now())
-            }
+            Some(check) => lock(check).attempt(address, Some(page), typed, Instant::now()),
             None => PairingVerdict::Right,
         }
     }

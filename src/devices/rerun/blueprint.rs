@@ -18,6 +18,7 @@ use re_sdk_types::blueprint::components::{Corner2D, LinkAxis};
 use re_sdk_types::datatypes::{Range2D, TimeInt, TimeRange, TimeRangeBoundary, VisibleTimeRange};
 
 use crate::scene::{WIDE, has_poses};
+use tomcom_core::communication::concept::BenefitUnit;
 use tomcom_session::Session;
 
 /// Application name of all streams, by which recordings share one layout in the Rerun viewer.
@@ -54,15 +55,15 @@ pub struct ShownRecording {
     pub films: usize,
     /// Whether the poses of the robot's arm are known.
     pub has_arm: bool,
-    /// Whether an assistant is asked, so that there are net benefits of signals.
-    pub has_advice: bool,
+    /// Unit of the net benefits of signals; `None` if no assistant is asked.
+    pub benefit: Option<BenefitUnit>,
 }
 
 impl ShownRecording {
     /// A recording alone in a stream, without films.
     pub fn of(session: &Session, title: String) -> ShownRecording {
-        let (has_arm, has_advice) = (has_poses(session), session.spec.asks_assistant());
-        ShownRecording { title, has_arm, has_advice, ..ShownRecording::default() }
+        let benefit = session.spec.asks_assistant().then(|| session.spec.assistant.concept.name().unit());
+        ShownRecording { title, has_arm: has_poses(session), benefit, ..ShownRecording::default() }
     }
 }
 
@@ -251,8 +252,11 @@ fn beliefs(lane: &ShownRecording, properties: &mut Vec<Property>) -> ContainerLi
 }
 
 fn benefit(lane: &ShownRecording, properties: &mut Vec<Property>) -> Option<ContainerLike> {
-    let name = "Net benefit from first advice on";
-    lane.has_advice.then(|| series(lane, name, &["assistant/benefit/**"], properties))
+    let name = match lane.benefit? {
+        BenefitUnit::Deviation => "Net benefit, a probability",
+        BenefitUnit::Presses | BenefitUnit::None => "Net benefit in presses",
+    };
+    Some(series(lane, name, &["assistant/benefit/**"], properties))
 }
 
 /// A view of states over time, as lanes with words.

@@ -206,10 +206,10 @@ pub fn mark() -> EntityUpdate {
 /// The signals whose net benefit is shown.
 #[derive(Clone, Debug, Default)]
 pub struct AdviceScene {
-    /// The signals that were advised so far: a curve begins where its signal is advised first, so that plot and legend have
-    /// only those.
+    /// The signals that were advised or sent so far: a curve begins where its signal is the first time, so that plot and
+    /// legend have only those.
     advised: Vec<Signal>,
-    /// Those whose curves have a value now, with it: a signal that was sent, or can be sent no more, has none.
+    /// Those whose curves have a value now, with it: a signal that can be sent no more has none.
     valued: Vec<(Signal, f64)>,
 }
 
@@ -225,13 +225,19 @@ impl AdviceScene {
         over.iter().flat_map(ends).collect()
     }
 
-    /// A signal was sent: its value by the last advice is marked, and what it would save is past.
+    /// A signal was sent: its value by the last advice is marked on its curve, which lasts until the next advice, also if
+    /// the signal was never advised.
     pub fn sent(&mut self, sent: &Signal, follower: &SessionFollower) -> Vec<EntityUpdate> {
-        let mut rows = self.keep(|signal| signal != sent);
-        let worth =
-            follower.signals.shown.iter().rfind(|shown| shown.signal == *sent).and_then(|one| one.worth.as_ref());
-        rows.extend(worth.map(|worth| EntityUpdate::new(SENT_MARKS, EntityData::Value(worth.net))));
-        rows
+        let record = follower.signals.shown.iter().rfind(|shown| shown.signal == *sent);
+        let Some(net) = record.and_then(|record| record.worth.as_ref()).map(|worth| worth.net) else {
+            return self.keep(|signal| signal != sent);
+        };
+        if !self.advised.contains(sent) {
+            self.advised.push(sent.clone());
+        }
+        self.valued.retain(|(signal, _)| signal != sent);
+        self.valued.push((sent.clone(), net));
+        [benefit(sent), SENT_MARKS.to_string()].map(|entity| EntityUpdate::new(entity, EntityData::Value(net))).into()
     }
 
     /// The trial is over.

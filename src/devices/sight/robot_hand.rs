@@ -12,6 +12,7 @@ use serde::Serialize;
 use super::content::button_place;
 #[cfg(feature = "physics")]
 use tomcom_arm::kinematics::SerialArm;
+use tomcom_core::base::maths::eased;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::{Agent, ButtonId};
 #[cfg(feature = "physics")]
@@ -165,10 +166,6 @@ impl RobotHand {
         #[cfg(not(feature = "physics"))]
         false
     }
-}
-
-fn eased(share: f64) -> f64 {
-    share.powi(3) * (10.0 - 15.0 * share + 6.0 * share * share)
 }
 
 /// Kinematics of the session's physical arm, from which the tip's position follows.

@@ -1,9 +1,7 @@
 //! The functions of URScript that the simulated controller has.
 
-use tomcom_core::robot::JOINTS;
-
 use super::controller::{INPUTS, Level, REGISTERS, SimulatedController, Watchdog, WatchdogAction};
-use super::motion::{Motion, Path, inverse, isometry, norm, six, tcp};
+use super::motion::{CYCLE_S, Motion, Path, inverse, isometry, norm, six, tcp, tcp_speed};
 use super::program::{Arguments, Outcome, Value, Wait};
 
 /// Default acceleration and speed of `movej` (radians) and `movel` (metres), and deceleration of a stop.
@@ -22,8 +20,8 @@ impl SimulatedController {
             "servoj" => self.servo(arguments),
             "speedj" | "speedl" => self.at_speed(name, arguments),
             "stopj" | "stopl" => self.stop_motion(name, arguments),
-            "sleep" => arguments.number("t", 0).map(|seconds| Outcome::Waits(Wait::Time(seconds.max(LEAST_SLEEP_S)))),
-            "sync" => Ok(Outcome::Waits(Wait::Cycle)),
+            "sleep" => arguments.number("t", 0).map(|seconds| self.wait(seconds.max(LEAST_SLEEP_S))),
+            "sync" => Ok(Outcome::Waits(Wait::Until(self.now_s() + CYCLE_S))),
             "halt" => Ok(Outcome::Halts),
             "textmsg" | "popup" => self.say(arguments),
             "rtde_set_watchdog" => self.set_watchdog(arguments),
@@ -39,6 +37,10 @@ impl SimulatedController {
             }
         };
         Some(found)
+    }
+
+    fn wait(&self, seconds: f64) -> Outcome {
+        Outcome::Waits(Wait::Until(self.awake_s + seconds))
     }
 
     fn move_along(&mut self, name: &str, arguments: &Arguments) -> Result<Outcome, String> {
@@ -70,7 +72,7 @@ impl SimulatedController {
         let lookahead_s = arguments.number_or("lookahead_time", 4, 0.1)?.max(LEAST_LOOKAHEAD_S);
         self.command.motion = Some(Motion::Follow { target: arguments.six("q", 0)?, lookahead_s });
         let takes_s = arguments.number_or("t", 3, self.step_s())?;
-        Ok(Outcome::Waits(Wait::Time(takes_s.max(self.step_s()))))
+        Ok(self.wait(takes_s.max(self.step_s())))
     }
 
     fn step_s(&self) -> f64 {
@@ -91,7 +93,7 @@ impl SimulatedController {
             _ => Motion::Move { speeds, acceleration },
         });
         let takes_s = arguments.number_or("t", 2, fastest / acceleration)?;
-        Ok(Outcome::Waits(Wait::Time(takes_s.max(self.step_s()))))
+        Ok(self.wait(takes_s.max(self.step_s())))
     }
 
     fn stop_motion(&mut self, name: &str, arguments: &Arguments) -> Result<Outcome, String> {
@@ -101,7 +103,7 @@ impl SimulatedController {
         }
         // Of a straight line, the leading joint slows down as the tool does.
         let leading = self.command.speeds.iter().map(|speed| speed.abs()).fold(0.0, f64::max);
-        let tool_m_s = norm(&self.tcp_speed(&self.command.angles, &self.command.speeds)[..3]);
+        let tool_m_s = norm(&tcp_speed(&self.arm, &self.command.angles, &self.command.speeds)[..3]);
         let deceleration = if name == "stopl" && tool_m_s > 1e-3 { a * leading / tool_m_s } else { a };
         self.command.stop(deceleration);
         Ok(Outcome::Waits(Wait::Motion))
@@ -200,7 +202,9 @@ impl SimulatedController {
             "get_target_joint_speeds" => Outcome::Value(Value::list(&self.command.speeds)),
             "get_actual_tcp_pose" => Outcome::Value(Value::Pose(six(&tcp(&self.arm, &arm.actual)))),
             "get_target_tcp_pose" => Outcome::Value(Value::Pose(six(&tcp(&self.arm, &self.command.angles)))),
-            "get_actual_tcp_speed" => Outcome::Value(Value::list(&self.tcp_speed(&arm.actual, &arm.actual_speeds))),
+            "get_actual_tcp_speed" => {
+                Outcome::Value(Value::list(&tcp_speed(&self.arm, &arm.actual, &arm.actual_speeds)))
+            }
             "get_tcp_force" => Outcome::Value(Value::list(&arm.tcp_force())),
             "force" => value(norm(&arm.force_n)),
             "get_steptime" => value(self.step_s()),
@@ -219,14 +223,6 @@ impl SimulatedController {
         let near = arguments.six_or("qnear", 1, self.command.angles)?;
         let found = inverse(&self.arm, &isometry(arguments.six("x", 0)?), &near);
         found.map(|joints| Outcome::Value(Value::list(&joints))).ok_or_else(|| "the pose is out of reach".to_string())
-    }
-
-    /// The speed of the tool centre point in the controller's base frame: metres and radians per second.
-    pub(super) fn tcp_speed(&self, joints: &[f64; JOINTS], speeds: &[f64; JOINTS]) -> [f64; 6] {
-        let moved = self.arm.tip_and_jacobian(joints).1 * nalgebra::Vector6::from(*speeds);
-        let turn = tomcom_arm::inverse::controller_from_base();
-        let (line, spin) = (turn * moved.fixed_rows::<3>(0), turn * moved.fixed_rows::<3>(3));
-        [line.x, line.y, line.z, spin.x, spin.y, spin.z]
     }
 }
 

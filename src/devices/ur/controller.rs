@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
+use tomcom_arm::controller::{DEVIATION_CYCLES, DEVIATION_RAD, MAY_TOUCH_M};
 use tomcom_arm::inverse::controller_from_base;
 use tomcom_arm::kinematics::SerialArm;
 use tomcom_arm::physics::PhysicsWorld;
@@ -25,13 +26,8 @@ const POWERS_S: f64 = 1.0;
 const RELEASES_S: f64 = 1.0;
 /// Time after a protective stop before which it is not unlocked, in seconds, as in the manufacturer's controllers.
 const LOCKED_S: f64 = 5.0;
-/// Distance of the tip from a button's middle within which the tip touches the button, and its height above the button's
-/// top at which it may, in metres.
+/// Distance of the tip from a button's middle within which the tip touches the button, in metres.
 const OVER_M: f64 = 0.02;
-const MAY_TOUCH_M: f64 = 0.01;
-/// Tracking error of a joint in radians, and number of cycles with such an error, that stop the arm.
-const DEVIATION_RAD: f64 = 0.05;
-const DEVIATION_CYCLES: u32 = 3;
 
 /// The generation of controllers that this one passes for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -149,12 +145,6 @@ impl ArmState {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Pending {
-    Motion,
-    Until(f64),
-}
-
 #[derive(Clone, Debug)]
 pub struct SimulatedController {
     pub series: Series,
@@ -174,9 +164,9 @@ pub struct SimulatedController {
     stopped_s: f64,
     program: Option<Program>,
     state: ProgramState,
-    pending: Option<Pending>,
+    pending: Option<Wait>,
     /// When the program's last wait ended, in seconds: waits shorter than a cycle add up.
-    awake_s: f64,
+    pub(super) awake_s: f64,
     pub(super) watchdogs: Vec<Watchdog>,
     /// Programs that can be loaded by name, and the name of the loaded one.
     programs: BTreeMap<String, String>,
@@ -513,7 +503,7 @@ impl SimulatedController {
             self.program = Some(program);
             match step {
                 Ok(Step::Ended) => self.end_program(),
-                Ok(Step::Waits(wait)) => self.pending = Some(self.pending_for(wait)),
+                Ok(Step::Waits(wait)) => self.pending = Some(wait),
                 Err(ScriptError { line, found }) => {
                     self.tell(Level::Error, format!("the program fails in line {line}: {found}"));
                     self.stop_program("it failed");
@@ -522,22 +512,14 @@ impl SimulatedController {
         }
     }
 
-    fn pending_for(&self, wait: Wait) -> Pending {
-        match wait {
-            Wait::Motion => Pending::Motion,
-            Wait::Time(seconds) => Pending::Until(self.awake_s + seconds),
-            Wait::Cycle => Pending::Until(self.now_s() + CYCLE_S),
-        }
-    }
-
     /// Whether what the program waits for has come.
     fn is_awake(&mut self) -> bool {
         let now_s = self.now_s();
         let at_s = match self.pending {
             None => now_s,
-            Some(Pending::Motion) if self.command.motion.is_none() => now_s,
+            Some(Wait::Motion) if self.command.motion.is_none() => now_s,
             // Sums of waits are rounded.
-            Some(Pending::Until(at_s)) if at_s <= now_s + 1e-9 => at_s.max(now_s - CYCLE_S),
+            Some(Wait::Until(at_s)) if at_s <= now_s + 1e-9 => at_s.max(now_s - CYCLE_S),
             Some(_) => return false,
         };
         (self.pending, self.awake_s) = (None, at_s);

@@ -10,6 +10,7 @@ mod way;
 use std::collections::VecDeque;
 
 use tomcom_arm::body::{TOLD_EVERY, rounded};
+use tomcom_arm::controller::STILL_RAD_S;
 use tomcom_arm::kinematics::SerialArm;
 use tomcom_arm::reach::{ArmSurroundings, ButtonPoses, UnreachableReason};
 use tomcom_arm::real_arm::ArmOrder;
@@ -28,8 +29,6 @@ use way::{Leg, Task};
 pub const PROGRAM: &str = include_str!("../../../examples/ur_press.script");
 /// Share of the speed in a dry run, in thousandths.
 const DRY_RUN: i32 = 100;
-/// The arm counts as standing still if all joints are slower than this, in radians per second.
-const STILL_RAD_S: f64 = 0.02;
 /// How far the tip may be from where this program computes it, in metres: more is another arm, or another tool.
 const OFF_M: f64 = 0.005;
 /// Longest time for power and brakes, for the start of the program, and to unlock, in seconds; time between tries to unlock.

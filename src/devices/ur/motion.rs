@@ -35,6 +35,14 @@ pub fn tcp(arm: &SerialArm, joints: &JointAngles) -> Isometry3<f64> {
     controller_from_base() * arm.tip(joints)
 }
 
+/// The speed of the tip in the controller's base frame: metres and radians per second.
+pub(super) fn tcp_speed(arm: &SerialArm, joints: &JointAngles, speeds: &JointAngles) -> [f64; 6] {
+    let moved = arm.tip_and_jacobian(joints).1 * Vector6::from(*speeds);
+    let turn = controller_from_base();
+    let (line, spin) = (turn * moved.fixed_rows::<3>(0), turn * moved.fixed_rows::<3>(3));
+    [line.x, line.y, line.z, spin.x, spin.y, spin.z]
+}
+
 /// The joint angles nearest to `near` at which the tip has this pose in the controller's base frame.
 pub fn inverse(arm: &SerialArm, pose: &Isometry3<f64>, near: &JointAngles) -> Option<JointAngles> {
     let base_from_tip = controller_from_base().inverse() * pose;
@@ -209,20 +217,16 @@ impl JointCommand {
 
     /// The next joint angles while the tool centre point approaches this speed.
     fn moved(&self, arm: &SerialArm, wanted: &[f64; 6], acceleration: f64) -> Result<JointAngles, &'static str> {
-        let (here, jacobian) = arm.tip_and_jacobian(&self.angles);
-        let turn = controller_from_base();
-        let in_controller = |part: Vector3<f64>| turn * part;
-        let now = jacobian * Vector6::from(self.speeds);
-        let (line, spin) = (in_controller(now.fixed_rows::<3>(0).into()), in_controller(now.fixed_rows::<3>(3).into()));
-        let is = [line.x, line.y, line.z, spin.x, spin.y, spin.z];
+        let here = tcp(arm, &self.angles);
+        let is = tcp_speed(arm, &self.angles, &self.speeds);
         let away: Vec<f64> = (0..6).map(|part| wanted[part] - is[part]).collect();
         let furthest =
             Vector3::new(away[0], away[1], away[2]).norm().max(Vector3::new(away[3], away[4], away[5]).norm());
         let part = if furthest > 0.0 { (acceleration * CYCLE_S / furthest).min(1.0) } else { 1.0 };
         let speeds: [f64; 6] = std::array::from_fn(|one| is[one] + away[one] * part);
-        let place = turn * here.translation.vector + Vector3::new(speeds[0], speeds[1], speeds[2]) * CYCLE_S;
-        let turned = UnitQuaternion::from_scaled_axis(Vector3::new(speeds[3], speeds[4], speeds[5]) * CYCLE_S)
-            * (turn * here.rotation);
+        let place = here.translation.vector + Vector3::new(speeds[0], speeds[1], speeds[2]) * CYCLE_S;
+        let turned =
+            UnitQuaternion::from_scaled_axis(Vector3::new(speeds[3], speeds[4], speeds[5]) * CYCLE_S) * here.rotation;
         let next = inverse(arm, &Isometry3::from_parts(place.into(), turned), &self.angles);
         let next = next.filter(|next| (0..JOINTS).all(|joint| (next[joint] - self.angles[joint]).abs() < JUMP_RAD));
         next.ok_or("its line passes a singularity, or leaves its reach")

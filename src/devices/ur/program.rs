@@ -128,12 +128,10 @@ impl Arguments {
 /// What a program waits for before its next instruction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Wait {
-    /// For this many seconds of the controller.
-    Time(f64),
+    /// Until this time of the controller, in seconds.
+    Until(f64),
     /// Until the present motion has ended.
     Motion,
-    /// For the next control cycle.
-    Cycle,
 }
 
 /// What a function of the controller gives back.
@@ -176,7 +174,7 @@ impl Program {
     }
 
     pub fn name(&self) -> &str {
-        &self.script.name
+        &self.script.functions[0].name
     }
 
     /// The line of the next instruction.

@@ -76,7 +76,6 @@ pub struct Function {
 /// A script that was read: the function that runs comes first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Script {
-    pub name: String,
     pub functions: Vec<Function>,
 }
 
@@ -101,7 +100,7 @@ impl Script {
         } else {
             functions.insert(0, main);
         }
-        Ok(Script { name: functions[0].name.clone(), functions })
+        Ok(Script { functions })
     }
 }
 

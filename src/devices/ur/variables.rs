@@ -6,7 +6,7 @@ use tomcom_arm::physics::CYCLE_S;
 use tomcom_core::robot::{JOINTS, SafetyMode};
 
 use super::controller::{ArmState, ProgramState, REGISTERS, RobotMode, SimulatedController};
-use super::motion::{norm, six, tcp};
+use super::motion::{norm, six, tcp, tcp_speed};
 
 /// A value as it goes over the connection: big endian. The answer to a setup names its type in capitals.
 #[derive(Clone, Copy, Debug, PartialEq, strum::EnumString, strum::IntoStaticStr)]
@@ -147,10 +147,14 @@ const OUTPUTS: &[(&str, Read)] = &[
     ("actual_current_window", NONE_OF_SIX),
     ("joint_control_output", NONE_OF_SIX),
     ("actual_TCP_pose", |view| Datum::Vector6d(six(&tcp(&view.controller.arm, &view.arm.actual)))),
-    ("actual_TCP_speed", |view| Datum::Vector6d(view.controller.tcp_speed(&view.arm.actual, &view.arm.actual_speeds))),
+    ("actual_TCP_speed", |view| {
+        Datum::Vector6d(tcp_speed(&view.controller.arm, &view.arm.actual, &view.arm.actual_speeds))
+    }),
     ("actual_TCP_force", |view| Datum::Vector6d(view.arm.tcp_force())),
     ("target_TCP_pose", |view| Datum::Vector6d(six(&tcp(&view.controller.arm, &view.arm.target)))),
-    ("target_TCP_speed", |view| Datum::Vector6d(view.controller.tcp_speed(&view.arm.target, &view.arm.target_speeds))),
+    ("target_TCP_speed", |view| {
+        Datum::Vector6d(tcp_speed(&view.controller.arm, &view.arm.target, &view.arm.target_speeds))
+    }),
     ("tcp_offset", |view| Datum::Vector6d(six(&view.controller.arm.flange_from_tip()))),
     ("tcp_force_scalar", |view| Datum::Double(norm(&view.arm.force_n))),
     ("ft_raw_wrench", NONE_OF_SIX),

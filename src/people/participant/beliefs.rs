@@ -4,7 +4,7 @@
 
 use tomcom_core::base::rng::Stream;
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::{AspectId, AspectKind, ContentId, DishId, Kitchen, LocationId, OrderContent, State, World};
+use tomcom_core::kitchen::{AspectId, ContentId, DishId, Kitchen, LocationId, OrderContent, State, World};
 
 use super::population::{ParticipantTraits, Population};
 use super::{drawn_by_weight, normal, rare_chance};
@@ -24,8 +24,7 @@ impl ParticipantBeliefs {
     /// memory changes the beliefs about recipes afterwards.
     pub(crate) fn of_state(kitchen: &Kitchen, state: State, sure: f64) -> ParticipantBeliefs {
         let mut beliefs = ParticipantBeliefs { of: kitchen.aspects.iter().map(|a| uniform(a.values.len())).collect() };
-        for index in 0..kitchen.aspects.len() {
-            let aspect = AspectId(index as u8);
+        for aspect in kitchen.aspect_ids() {
             beliefs.settle(aspect, kitchen.true_value(state, aspect), sure);
         }
         beliefs
@@ -90,15 +89,11 @@ impl ParticipantBeliefs {
 
     /// The world (state and recipes) that is most probable in the participant's beliefs.
     pub fn point(&self, kitchen: &Kitchen) -> World {
-        let World { mut state, mut recipes } = World::empty(kitchen);
-        for (index, aspect) in kitchen.aspects.iter().enumerate() {
-            let code = aspect.values[self.most_likely(AspectId(index as u8))];
-            match aspect.kind {
-                AspectKind::Location(location) => state.set_code(location, code),
-                AspectKind::Recipe(dish) => recipes.set(dish, ContentId(code)),
-            }
+        let mut world = World::empty(kitchen);
+        for aspect in kitchen.aspect_ids() {
+            world.set_value(kitchen, aspect, self.most_likely(aspect));
         }
-        World { state, recipes }
+        world
     }
 
     pub fn p_truth(&self, kitchen: &Kitchen, state: State, aspect: AspectId) -> f64 {

@@ -217,28 +217,25 @@ impl DecisionContext<'_> {
     /// A press that may end a standstill: a press that empties the hand, or takes something away from a place.
     fn try_something(&self, world: &World) -> Option<ButtonId> {
         let presses = effective_presses(self.kitchen, world);
-        let is_trash = |button: ButtonId| self.kitchen.button(Agent::Human, button).action == ButtonAction::Trash;
-        if let Some((trash, _)) = presses.iter().find(|(button, _)| is_trash(*button)) {
-            return Some(*trash);
+        let action = |button: &ButtonId| self.kitchen.button(Agent::Human, *button).action;
+        let trash = presses.iter().copied().find(|button| action(button) == ButtonAction::Trash);
+        if trash.is_some() {
+            return trash;
         }
-        let clears = |button: ButtonId| match self.kitchen.button(Agent::Human, button).action {
+        let clears = |button: &ButtonId| match action(button) {
             ButtonAction::Use(place) => self.kitchen.location(place).kind == LocationKind::Place,
             _ => false,
         };
-        let clearing: Vec<ButtonId> = presses.iter().map(|(button, _)| *button).filter(|&one| clears(one)).collect();
-        let all: Vec<ButtonId> = presses.iter().map(|(button, _)| *button).collect();
-        let choices = if clearing.is_empty() { all } else { clearing };
+        let clearing: Vec<ButtonId> = presses.iter().copied().filter(clears).collect();
+        let choices = if clearing.is_empty() { presses } else { clearing };
         let index = (self.lapses.whim * choices.len() as f64) as usize;
         choices.get(index).copied()
     }
 }
 
-pub(crate) fn effective_presses(kitchen: &Kitchen, world: &World) -> Vec<(ButtonId, State)> {
-    let step = |index: usize| {
-        let button = ButtonId(index as u8);
-        Some((button, kitchen.press(world.state, &world.recipes, Agent::Human, button)?))
-    };
-    (0..kitchen.buttons[Agent::Human.index()].len()).filter_map(step).collect()
+pub(crate) fn effective_presses(kitchen: &Kitchen, world: &World) -> Vec<ButtonId> {
+    let press = |button: ButtonId| kitchen.press(world.state, &world.recipes, Agent::Human, button);
+    kitchen.button_ids(Agent::Human).filter(|&button| press(button).is_some()).collect()
 }
 
 /// Habits of one simulated participant, including the dish that the participant made last.

@@ -205,41 +205,25 @@ impl TaskKnowledge {
         self.makings[item.index()]
     }
 
+    /// How a part is made, its last processing step first.
+    fn makings(&self, part: ContentId) -> impl Iterator<Item = ItemPreparation> {
+        std::iter::successors(self.making(part), move |making| self.making(making.from)).take(MOST_STEPS)
+    }
+
     /// The number of processing steps from `content` to `part`; `None` if the content cannot become that part.
     pub(crate) fn steps_to(&self, content: ContentId, part: ContentId) -> Option<u8> {
-        let mut item = part;
-        for steps in 0..MOST_STEPS {
-            if item == content {
-                return Some(steps as u8);
-            }
-            item = self.making(item)?.from;
-        }
-        None
+        let items = std::iter::once(part).chain(self.makings(part).map(|making| making.from));
+        items.take(MOST_STEPS).position(|item| item == content).map(|steps| steps as u8)
     }
 
     /// The next processing step of `content` on the way to `part`; `None` if the content is that part already, or can
     /// never become it.
     pub(crate) fn next_making(&self, content: ContentId, part: ContentId) -> Option<ItemPreparation> {
-        let mut item = part;
-        for _ in 0..MOST_STEPS {
-            let making = self.making(item)?;
-            if making.from == content {
-                return Some(making);
-            }
-            item = making.from;
-        }
-        None
+        self.makings(part).find(|making| making.from == content)
     }
 
     /// The ingredient, taken from a storage, from which a part is made.
     pub fn ingredient(&self, part: ContentId) -> ContentId {
-        let mut item = part;
-        for _ in 0..MOST_STEPS {
-            match self.making(item) {
-                Some(making) => item = making.from,
-                None => break,
-            }
-        }
-        item
+        self.makings(part).last().map_or(part, |making| making.from)
     }
 }

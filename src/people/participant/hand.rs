@@ -3,7 +3,7 @@
 use rand::RngExt;
 use tomcom_core::base::rng::Stream;
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::{Agent, AspectId, ButtonAction, ButtonId, DishId, Kitchen, LocationId, State, World};
+use tomcom_core::kitchen::{Agent, AspectId, ButtonId, DishId, Kitchen, LocationId, State, World};
 
 use super::beliefs::wanted_dish;
 use super::decision::{Impatience, effective_presses};
@@ -65,16 +65,13 @@ impl SimulatedParticipant {
     fn worth_a_look(&mut self, now: SessionTime, button: ButtonId) -> Option<LocationId> {
         let kitchen = self.kitchen.clone();
         let own = kitchen.hands[Agent::Human.index()];
-        let mut places = kitchen.involved(Agent::Human, button);
-        let unsure = places.iter().find(|&&place| self.beliefs.certainty(AspectId::of_location(place)) < UNSURE_BELOW);
+        let is_unsure = |&place: &LocationId| self.beliefs.certainty(AspectId::of_location(place)) < UNSURE_BELOW;
+        let unsure = kitchen.involved(Agent::Human, button).into_iter().find(is_unsure);
         if unsure.is_some() {
-            return unsure.copied();
-        }
-        if let ButtonAction::Take(_) = kitchen.button(Agent::Human, button).action {
-            places.push(kitchen.hands[Agent::Robot.index()]);
+            return unsure;
         }
         let is_old = |place: LocationId| now.secs_since(self.attention.read_at[place.index()]) > FRESH_S;
-        let old = places.into_iter().find(|&place| place != own && is_old(place));
+        let old = kitchen.watched(button).into_iter().find(|&place| place != own && is_old(place));
         old.filter(|_| self.looks_first == 0 && chance(&mut self.hand, self.person.makes_sure))
     }
 
@@ -104,13 +101,11 @@ impl SimulatedParticipant {
             (None, Some(other)) => (other, format!("slip: hit a button nearby, meant {}", name(button))),
             (None, None) if is_thoughtless => {
                 let possible = effective_presses(&kitchen, &self.beliefs.point(&kitchen));
-                match possible.is_empty() {
-                    true => return (button, None),
-                    false => {
-                        let (other, _) = possible[self.hand.random_range(0..possible.len())];
-                        return (other, Some("without thinking".to_string()));
-                    }
+                if possible.is_empty() {
+                    return (button, None);
                 }
+                let other = possible[self.hand.random_range(0..possible.len())];
+                return (other, Some("without thinking".to_string()));
             }
             (None, None) => return (button, None),
         };

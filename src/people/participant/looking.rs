@@ -62,11 +62,8 @@ impl SimulatedParticipant {
         let kitchen = self.kitchen.clone();
         let eye = self.eyes.position(now);
         let needed = self.needed();
-        for (index, location) in kitchen.locations.iter().enumerate() {
-            let id = LocationId(index as u8);
-            if state.code(id) == self.display.code(id) {
-                continue;
-            }
+        for id in kitchen.changed(self.display, state) {
+            let location = kitchen.location(id);
             if self.attention.looking_at == Some(id) && self.eyes.has_landed(now) {
                 self.eyes.look_again(now);
                 continue;

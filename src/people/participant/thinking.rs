@@ -59,14 +59,8 @@ impl SimulatedParticipant {
     /// content of the places that the press changed.
     pub(super) fn guess(&mut self, before: State, after: State) {
         let kitchen = self.kitchen.clone();
-        for index in 0..kitchen.locations.len() {
-            let location = LocationId(index as u8);
-            let aspect = AspectId::of_location(location);
-            if before.code(location) != after.code(location)
-                && let Some(value) = kitchen.aspects[aspect.index()].index_of(after.code(location))
-            {
-                self.beliefs.settle(aspect, value, GUESSED_CERTAINTY);
-            }
+        for place in kitchen.changed(before, after) {
+            settle(&kitchen, &mut self.beliefs, place, after, GUESSED_CERTAINTY);
         }
         self.rethink = true;
     }
@@ -244,12 +238,12 @@ fn make_sense(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, button: Butto
             settle(kitchen, beliefs, hand, state, ACTED_CERTAINTY);
         }
         ButtonAction::Trash => {
-            state.set_content(hand, tomcom_core::kitchen::ContentId::EMPTY);
+            state.set_content(hand, ContentId::EMPTY);
             settle(kitchen, beliefs, hand, state, ACTED_CERTAINTY);
         }
         ButtonAction::Serve(order) => {
-            state.set_content(kitchen.plate, tomcom_core::kitchen::ContentId::EMPTY);
-            state.set_order(order, tomcom_core::kitchen::OrderContent::Served);
+            state.set_content(kitchen.plate, ContentId::EMPTY);
+            state.set_order(order, OrderContent::Served);
             settle(kitchen, beliefs, kitchen.plate, state, ACTED_CERTAINTY);
             settle(kitchen, beliefs, order, state, ACTED_CERTAINTY);
         }

@@ -30,8 +30,8 @@ pub fn witness(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State, re
 
 /// Records the belief about every aspect at a freeze probe, which leads to no press.
 pub(crate) fn without_press(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State) -> RecordedBelief {
-    let told = |index: usize| {
-        let (aspect, id) = (&kitchen.aspects[index], AspectId(index as u8));
+    let told = |id: AspectId| {
+        let aspect = &kitchen.aspects[id.index()];
         let values = aspect.labels.iter().zip(beliefs.distribution(id)).filter(|(_, p)| **p >= WORTH_TELLING);
         AspectBelief {
             aspect: aspect.name.clone(),
@@ -41,7 +41,7 @@ pub(crate) fn without_press(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, sta
         }
     };
     RecordedBelief {
-        aspects: (0..kitchen.aspects.len()).map(told).collect(),
+        aspects: kitchen.aspect_ids().map(told).collect(),
         cause: "asked by a probe".to_string(),
         origin: None,
         targets: Vec::new(),
@@ -81,7 +81,9 @@ impl PressReason {
         let wrong = wrong_targets(kitchen, believed, truth);
         let told = |world: &World, target: &[AspectId]| {
             let mut world = *world;
-            target.iter().for_each(|&aspect| tell(kitchen, &mut world, truth, aspect));
+            for &aspect in target {
+                world.set_value(kitchen, aspect, kitchen.true_value(truth.state, aspect));
+            }
             world
         };
         let mut changing: Option<Vec<AspectId>> = None;
@@ -117,11 +119,9 @@ impl PressReason {
 /// are one target.
 fn wrong_targets(kitchen: &Kitchen, believed: &World, truth: &World) -> Vec<Vec<AspectId>> {
     let is_wrong = |aspect: &AspectId| code_of(kitchen, believed, *aspect) != code_of(kitchen, truth, *aspect);
-    let mut left: Vec<AspectId> =
-        (0..kitchen.aspects.len()).map(|index| AspectId(index as u8)).filter(is_wrong).collect();
+    let mut left: Vec<AspectId> = kitchen.aspect_ids().filter(is_wrong).collect();
     let mut targets = Vec::new();
-    for index in 0..kitchen.locations.len() {
-        let location = LocationId(index as u8);
+    for location in kitchen.location_ids() {
         let mut target = vec![AspectId::of_location(location)];
         if kitchen.location(location).kind == LocationKind::Order
             && let OrderContent::Dish(dish) = truth.state.order(location)
@@ -142,13 +142,6 @@ fn code_of(kitchen: &Kitchen, world: &World, aspect: AspectId) -> u8 {
     match kitchen.aspects[aspect.index()].kind {
         AspectKind::Location(location) => world.state.code(location),
         AspectKind::Recipe(dish) => world.recipes.get(dish).0,
-    }
-}
-
-fn tell(kitchen: &Kitchen, world: &mut World, truth: &World, aspect: AspectId) {
-    match kitchen.aspects[aspect.index()].kind {
-        AspectKind::Location(location) => world.state.set_code(location, truth.state.code(location)),
-        AspectKind::Recipe(dish) => world.recipes.set(dish, truth.recipes.get(dish)),
     }
 }
 

@@ -39,8 +39,11 @@ pub struct ScriptedWizard {
     /// change.
     watched: Vec<(SessionTime, LocationId)>,
     signalled_at: Option<SessionTime>,
-    /// The part that reads the assistant's offers; `None` if the wizard ignores offers.
-    reader: Option<OfferReader>,
+    /// Random stream for reading the assistant's offers; `None` if the wizard ignores offers. The stream is separate so that
+    /// the wizard's own judgement is the same with and without offers.
+    reading: Option<Stream>,
+    /// The offer that the wizard will take: the time of the taking, and the offer's sequence number.
+    takes: Option<(SessionTime, u64)>,
 }
 
 impl ScriptedWizard {
@@ -54,24 +57,32 @@ impl ScriptedWizard {
     ) -> ScriptedWizard {
         let seen = ParticipantSeenKitchen::new(kitchen.empty_state());
         let random = stream(seed, "wizard", trial);
-        let (about_to, watched, signalled_at) = (None, Vec::new(), None);
-        let presses = VecDeque::with_capacity(REMEMBERED_PRESSES);
-        let reader = None;
-        ScriptedWizard { kitchen, spec, highlights, random, seen, presses, about_to, watched, signalled_at, reader }
+        ScriptedWizard {
+            kitchen,
+            spec,
+            highlights,
+            random,
+            seen,
+            presses: VecDeque::with_capacity(REMEMBERED_PRESSES),
+            about_to: None,
+            watched: Vec::new(),
+            signalled_at: None,
+            reading: None,
+            takes: None,
+        }
     }
 
     /// Lets the wizard read offers as the settings say, with a random stream of its own for that.
     pub fn reading_offers(self, seed: u64, trial: u64) -> ScriptedWizard {
-        let spread = self.spec.reaction_spread;
-        let reader = self.spec.offers.map(|offers| OfferReader::new(offers, spread, seed, trial));
-        ScriptedWizard { reader, ..self }
+        let reading = self.spec.offers.map(|_| stream(seed, "wizard's reading of offers", trial));
+        ScriptedWizard { reading, ..self }
     }
 
     /// Time of the wizard's next signal or check; `None` if nothing is planned.
     pub fn next_due(&self) -> Option<SessionTime> {
         let watched = self.watched.iter().map(|(time, _)| *time);
-        let offer = self.reader.as_ref().and_then(OfferReader::due);
-        watched.chain(self.about_to.map(|(time, _)| time)).chain(offer).min()
+        let (signal, offer) = (self.about_to.map(|(time, _)| time), self.takes.map(|(time, _)| time));
+        watched.chain(signal).chain(offer).min()
     }
 
     pub fn on_trial_start(&mut self, state: State) {
@@ -122,10 +133,16 @@ impl ScriptedWizard {
         self.about_to.take_if(|(_, thought)| thought.location() == location);
     }
 
+    /// Reacts to an offer that opens: decides whether the wizard will take the offer, and when. The new offer replaces
+    /// the previous offer.
     pub fn on_offer(&mut self, now: SessionTime, offer: u64) {
-        if let Some(reader) = &mut self.reader {
-            reader.on_offer(now, offer);
-        }
+        let (Some(OfferReading { takes, reads_s }), Some(random)) = (self.spec.offers, &mut self.reading) else {
+            return;
+        };
+        let normal: f64 = StandardNormal.sample(random);
+        let is_taken = random.random::<f64>() < takes;
+        let reading = SessionTime::from_secs_f64(reads_s * (self.spec.reaction_spread * normal).exp());
+        self.takes = is_taken.then(|| (now + reading.max(UNREAD), offer));
     }
 
     pub fn postpone(&mut self, by: SessionTime) {
@@ -133,9 +150,7 @@ impl ScriptedWizard {
         self.about_to = self.about_to.map(|(time, thought)| (time + by, thought));
         self.watched.iter_mut().for_each(|(time, _)| *time = *time + by);
         self.signalled_at = self.signalled_at.map(|time| time + by);
-        if let Some(reader) = &mut self.reader {
-            reader.postpone(by);
-        }
+        self.takes = self.takes.map(|(time, offer)| (time + by, offer));
     }
 
     /// Performs the wizard's action that is due: sends a signal, takes an offer, or checks whether the participant saw
@@ -144,8 +159,10 @@ impl ScriptedWizard {
         if let Some((_, thought)) = self.about_to.take_if(|(time, _)| *time <= now) {
             return self.say(now, thought, state, cost).map(WizardAction::Send);
         }
-        if self.reader.as_ref().and_then(OfferReader::due).is_some_and(|due| due <= now) {
-            return self.take_offer(now).map(WizardAction::TakeOffer);
+        if let Some((_, offer)) = self.takes.take_if(|(time, _)| *time <= now) {
+            // The wizard waits with an offer until some time has passed since the last signal.
+            self.takes = self.rested().filter(|&rested| rested > now).map(|rested| (rested, offer));
+            return self.takes.is_none().then_some(WizardAction::TakeOffer(offer));
         }
         let index = self.watched.iter().position(|(time, _)| *time <= now)?;
         let (_, location) = self.watched.swap_remove(index);
@@ -158,20 +175,6 @@ impl ScriptedWizard {
             self.think_of(now, SuspectedFalseBelief::Place(location), state);
         }
         None
-    }
-
-    /// The offer that the wizard takes now; the wizard waits with an offer until some time has passed since the last
-    /// signal.
-    fn take_offer(&mut self, now: SessionTime) -> Option<u64> {
-        let rested = self.rested().filter(|&rested| rested > now);
-        let reader = self.reader.as_mut()?;
-        match rested {
-            Some(rested) => {
-                reader.wait_until(rested);
-                None
-            }
-            None => reader.take(now),
-        }
     }
 
     /// The earliest time of the wizard's next signal after the last one; `None` before the first signal.
@@ -246,48 +249,5 @@ impl ScriptedWizard {
 
     fn chance(&mut self, p: f64) -> bool {
         self.random.random::<f64>() < p
-    }
-}
-
-#[derive(Clone, Debug)]
-pub struct OfferReader {
-    spec: OfferReading,
-    /// Standard deviation of the logarithm of the time for reading an offer.
-    spread: f64,
-    /// Random stream of the reader; the stream is separate so that the wizard's own judgement is the same with and
-    /// without offers.
-    random: Stream,
-    /// The offer that the wizard will take: the time of the taking, and the offer's sequence number.
-    takes: Option<(SessionTime, u64)>,
-}
-
-impl OfferReader {
-    pub fn new(spec: OfferReading, spread: f64, seed: u64, trial: u64) -> OfferReader {
-        OfferReader { spec, spread, random: stream(seed, "wizard's reading of offers", trial), takes: None }
-    }
-
-    pub fn due(&self) -> Option<SessionTime> {
-        self.takes.map(|(time, _)| time)
-    }
-
-    /// Reacts to an offer that opens: decides whether the wizard will take the offer, and when. The new offer replaces
-    /// the previous offer.
-    pub fn on_offer(&mut self, now: SessionTime, offer: u64) {
-        let normal: f64 = StandardNormal.sample(&mut self.random);
-        let is_taken = self.random.random::<f64>() < self.spec.takes;
-        let reading = SessionTime::from_secs_f64(self.spec.reads_s * (self.spread * normal).exp());
-        self.takes = is_taken.then(|| (now + reading.max(UNREAD), offer));
-    }
-
-    pub fn take(&mut self, now: SessionTime) -> Option<u64> {
-        self.takes.take_if(|(time, _)| *time <= now).map(|(_, offer)| offer)
-    }
-
-    pub fn wait_until(&mut self, time: SessionTime) {
-        self.takes = self.takes.map(|(due, offer)| (due.max(time), offer));
-    }
-
-    pub fn postpone(&mut self, by: SessionTime) {
-        self.takes = self.takes.map(|(time, offer)| (time + by, offer));
     }
 }

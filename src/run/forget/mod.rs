@@ -37,6 +37,7 @@ use tomcom_study::report;
 
 /// Largest size of a report or a training record that is read, in bytes.
 const MAX_BYTES: u64 = 64 << 20;
+
 /// A file that is or may be about the participant and is kept, with the reason.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct RetainedFile {
@@ -45,7 +46,7 @@ pub struct RetainedFile {
 }
 
 /// All data about one participant code that were found in a folder, for their deletion.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ParticipantData {
     pub code: String,
     pub root: PathBuf,
@@ -90,15 +91,7 @@ pub fn find(root: &Path, temporary: &Path, code: &str) -> FileResult<Participant
         code: code.to_string(),
         root: root.to_path_buf(),
         temporary: temporary.to_path_buf(),
-        recordings: Vec::new(),
-        recording_files: Vec::new(),
-        files: Vec::new(),
-        tables: Vec::new(),
-        trainings: Vec::new(),
-        left: Vec::new(),
-        naming: Vec::new(),
-        near: String::new(),
-        folders: Vec::new(),
+        ..ParticipantData::default()
     };
     let mut search = ForgetSearch { found, subject: ForgetSubject::new(code), folders: Vec::new() };
     search.enter(root, false);
@@ -168,14 +161,14 @@ impl ForgetSearch {
             );
         }
         let owner = RecordingOwner::read(folder);
-        let is_recording = matches!(&owner, RecordingOwner::Participant { code, .. } if *code == self.found.code);
+        let is_recording = matches!(&owner, RecordingOwner::Participant(found) if found.code == self.found.code);
         let is_own = is_recording || (is_inside && matches!(owner, RecordingOwner::NoRecording));
         match owner {
-            RecordingOwner::Participant { code, recorded_as, began } => {
+            RecordingOwner::Participant(recording) => {
                 // Its log cannot be changed.
-                let is_named = !is_recording && recorded_as == self.found.code;
+                let is_named = !is_recording && recording.recorded_as == self.found.code;
                 self.found.naming.extend(is_named.then(|| folder.join(LOG_NAME)));
-                self.subject.add(folder, code, recorded_as, began);
+                self.subject.add(recording);
             }
             RecordingOwner::Unknown(reason) => self.leave(folder, reason),
             RecordingOwner::NoRecording => {}

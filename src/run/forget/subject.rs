@@ -17,16 +17,19 @@ use tomcom_session::person_code::without_seed;
 pub(super) const AMBIGUOUS: &str = "it names a recording, and recordings of several people in different folders have this name; \
                          tomcom forget --in the folder with one of them, or delete it by hand";
 
+/// A recording of which it is known whose it is.
+pub(super) struct KnownRecording {
+    folder: PathBuf,
+    pub code: String,
+    /// The code in the log; another one if the code was corrected.
+    pub recorded_as: String,
+    /// Time at which the recording began, as the identity of a Rerun stream states it; `None` without a readable header.
+    began: Option<String>,
+}
+
 /// Which participant the recording in a folder belongs to.
 pub(super) enum RecordingOwner {
-    Participant {
-        code: String,
-        /// The code in the log; another one if the code was corrected.
-        recorded_as: String,
-        /// Time at which the recording began, as the identity of a Rerun stream states it; `None` without a readable
-        /// header.
-        began: Option<String>,
-    },
+    Participant(KnownRecording),
     /// A recording whose participant cannot be determined, with the reason.
     Unknown(&'static str),
     NoRecording,
@@ -40,9 +43,12 @@ impl RecordingOwner {
     pub(super) fn read(folder: &Path) -> RecordingOwner {
         let log = folder.join(LOG_NAME);
         let settings = read_settings(folder);
+        let known = |code, recorded_as, began| {
+            RecordingOwner::Participant(KnownRecording { folder: folder.to_path_buf(), code, recorded_as, began })
+        };
         if !is_file(&log) {
             return match settings {
-                Some((code, true)) => RecordingOwner::Participant { recorded_as: code.clone(), code, began: None },
+                Some((code, true)) => known(code.clone(), code, None),
                 _ => RecordingOwner::NoRecording,
             };
         }
@@ -67,11 +73,11 @@ impl RecordingOwner {
                 let simulated =
                     || Some(format!("seed {} trial {}", session["seed"].as_u64()?, header["trial"].as_u64()?));
                 let began = header["started"].as_str().map(str::to_string).or_else(simulated);
-                return RecordingOwner::Participant { code, recorded_as, began };
+                return known(code, recorded_as, began);
             }
         }
         match settings {
-            Some((code, _)) => RecordingOwner::Participant { recorded_as: code.clone(), code, began: None },
+            Some((code, _)) => known(code.clone(), code, None),
             None => RecordingOwner::Unknown(
                 "a recording that does not say whose it is: events.jsonl has no readable header, and session.toml is \
                  missing or damaged; it is to be deleted by hand, if it is the participant's",
@@ -106,13 +112,6 @@ pub(super) enum NamedPerson {
     Ambiguous,
 }
 
-struct KnownRecording {
-    folder: PathBuf,
-    code: String,
-    recorded_as: String,
-    began: Option<String>,
-}
-
 /// The participant whose data are to be deleted, and all recordings that were found, by the names of their folders.
 pub(super) struct ForgetSubject {
     code: String,
@@ -126,9 +125,8 @@ impl ForgetSubject {
     }
 
     /// Adds a recording, of the participant or of somebody else.
-    pub(super) fn add(&mut self, folder: &Path, code: String, recorded_as: String, began: Option<String>) {
-        let recording = KnownRecording { folder: folder.to_path_buf(), code, recorded_as, began };
-        self.recordings.entry(file_name(folder)).or_default().push(recording);
+    pub(super) fn add(&mut self, recording: KnownRecording) {
+        self.recordings.entry(file_name(&recording.folder)).or_default().push(recording);
     }
 
     /// The codes of all participants with a recording, as often as they have one.
@@ -167,13 +165,8 @@ impl ForgetSubject {
         match own.next() {
             None => NamedPerson::Other,
             Some(first) if own.any(|is_own| is_own != first) => NamedPerson::Ambiguous,
-            Some(first) => {
-                if first {
-                    NamedPerson::Subject
-                } else {
-                    NamedPerson::Other
-                }
-            }
+            Some(true) => NamedPerson::Subject,
+            Some(false) => NamedPerson::Other,
         }
     }
 

@@ -20,8 +20,8 @@ pub(super) struct CaptureRequestSender {
     orders: Option<Sender<CaptureRequest>>,
     /// Name of the recording, under which Pupil Capture records, too.
     name: String,
-    /// Whether the trial has begun and not ended.
-    is_on: bool,
+    /// Whether a trial is recorded in Pupil Capture that has not ended.
+    pub is_on: bool,
     /// Label of the trial's phase that was sent to Pupil Capture last.
     phase: Option<&'static str>,
     signal: Option<String>,
@@ -32,7 +32,8 @@ impl CaptureRequestSender {
     /// Prepares Pupil Capture for a recording with this name; in a continued recording, Pupil Capture records the trial
     /// from now on.
     pub fn begin(tracker: &GazeTracker, name: String, session: &Session, now: Instant) -> CaptureRequestSender {
-        let mut capture = CaptureRequestSender { orders: tracker.orders(), name, ..CaptureRequestSender::default() };
+        let orders = tracker.orders.clone();
+        let mut capture = CaptureRequestSender { orders, name, ..CaptureRequestSender::default() };
         capture.probe = session.probes.open.as_ref().map(|open| open.number);
         capture.phase = match session.phase {
             TrialPhase::Running => Some(RUNNING),
@@ -101,11 +102,6 @@ impl CaptureRequestSender {
         if ends && std::mem::take(&mut self.is_on) {
             self.order(CaptureRequest::StopRecording);
         }
-    }
-
-    /// Whether a trial is recorded in Pupil Capture that has not ended.
-    pub fn is_on(&self) -> bool {
-        self.is_on
     }
 
     /// Ends Pupil Capture's recording when the wizard leaves a trial that can be continued later.

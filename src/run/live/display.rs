@@ -9,7 +9,7 @@ use tomcom_core::base::text::printable;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::kitchen::Agent;
-use tomcom_devices::display::{DisplayHandle, DisplayServer, ParticipantResponse};
+use tomcom_devices::display::{DisplayHandle, ParticipantResponse};
 use tomcom_devices::sight::{DisplayContent, RobotHand, RobotHandPose, scene, sight, time_left};
 use tomcom_session::admit::admit;
 use tomcom_session::probes::ProbeEvent;
@@ -37,9 +37,8 @@ pub(super) struct ParticipantDisplay {
 impl ParticipantDisplay {
     /// The participant's display of the operator's station, if there is one, with the display's state for the wizard.
     pub fn at(station: &OperatorStation) -> (Option<ParticipantDisplay>, Option<ParticipantDisplayHealth>) {
-        let display = station.display.server().map(DisplayServer::screen);
-        let display = display.map(|screen| ParticipantDisplay { screen, shown: None, hand: None, told: None });
-        (display, station.display.health())
+        let display = |screen| ParticipantDisplay { screen, shown: None, hand: None, told: None };
+        (station.display.screen().map(display), station.display.health())
     }
 
     /// Sends the part of the participant's page that stays the same during this session.

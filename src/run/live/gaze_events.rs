@@ -35,7 +35,7 @@ impl GazeInput {
     /// The gaze input of a recording that begins or continues with this session.
     pub fn at(tracker: &GazeTracker, session: &Session) -> GazeInput {
         let missing_confidence = session.spec.tracker.missing_confidence;
-        let Some(file) = tracker.file() else { return GazeInput { missing_confidence, ..GazeInput::default() } };
+        let Some(file) = tracker.file.clone() else { return GazeInput { missing_confidence, ..GazeInput::default() } };
         let dropped = DroppedInputCounts { malformed: file.summary.malformed, ..DroppedInputCounts::default() };
         let clock_s = session.trial_clock(session.time).as_secs_f64();
         let is_past = |(at_s, _): &&(f64, GazeSample)| session.phase != TrialPhase::Ready && *at_s < clock_s;

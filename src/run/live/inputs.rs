@@ -6,7 +6,7 @@ use crate::console::console_model::NoticeLevel;
 use crate::console::{ConsoleCommand, ConsoleMessage, update};
 use crate::run::assistant_link::AssistantNews;
 use crate::run::leaving::LeavingReason;
-use crate::run::operator_station::{PageInput, Remark, lost_since};
+use crate::run::operator_station::{ArmNews, PageInput, Remark, lost_since};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_devices::external::LocalMinds;
@@ -59,6 +59,23 @@ impl Live {
             Some(reason) => Err(reason),
             None => Ok(()),
         });
+    }
+
+    /// Takes what a real arm does as events of the session, and what is found of it as checks.
+    #[cfg(feature = "ur")]
+    pub(super) fn take_arm_news(&mut self, news: ArmNews) {
+        self.dirty = true;
+        match news {
+            ArmNews::Event(event) if self.engine.session().phase != TrialPhase::Closed => self.input(*event),
+            ArmNews::Event(_) => {}
+            ArmNews::Checks(checks) => self.model.arm = checks,
+            ArmNews::Message(words) => self.model.warn(format!("the arm's controller: {words}")),
+        }
+    }
+
+    #[cfg(not(feature = "ur"))]
+    pub(super) fn take_arm_news(&mut self, news: ArmNews) {
+        match news {}
     }
 
     /// Takes what came back from whoever advises.

@@ -53,9 +53,7 @@ pub(super) struct Live {
     pub(super) participant: Option<ParticipantLink>,
     /// The comparison of wizard and assistants, if the console shows it.
     pub(super) comparison: Option<ComparisonThreadHandle>,
-    /// The participant's display, if there is one.
     pub(super) display: Option<ParticipantDisplay>,
-    /// The orders to a real arm, if there is one.
     arm: Option<ArmOrders>,
     /// What tells the state of the observers' page, if there is one.
     pub(super) observers: Option<Box<dyn Fn() -> ObserverStatus>>,
@@ -64,13 +62,10 @@ pub(super) struct Live {
     pub(super) model: ConsoleModel,
     header: LogHeader,
     pub(super) log: LogWriter,
-    /// The session's stream to Rerun viewers, if it has one.
     pub(super) viewing: Option<StreamedSession>,
-    /// The session's streams of the Lab Streaming Layer, if it sends any.
     pub(super) lsl: Option<LslStreaming>,
     /// Lock on the previous part of a continued recording, so that no other program writes to it.
     _before: Option<RecordingLock>,
-    /// Error of writing the log, if writing has failed.
     pub(super) failed: Option<RecordingWriteError>,
     pub(super) clock: SessionClock,
     pub(super) gaze: GazeInput,
@@ -102,7 +97,7 @@ pub(in crate::run) async fn run(
     // and the robot stops in any case.
     let leaving = left.as_ref().ok().copied().flatten().unwrap_or(LeavingReason::Quit);
     let told = if leaving == LeavingReason::Quit { Ok(()) } else { live.tell_next(station) };
-    station.tracker.keep(live.engine.session().calibrated.clone());
+    station.tracker.calibrated = live.engine.session().calibrated.clone();
     let films = live.filming.leave();
     let folder = live.log.folder().to_path_buf();
     let end = live.close(leaving);
@@ -199,13 +194,13 @@ impl Live {
         model.is_last_recording = is_last;
         let comparison = compare.as_ref().map(|request| {
             let session = Session::new(kitchen.clone(), spec.clone(), header.trial);
-            SenderComparisonFollower::new(session, CostToGo::new(kitchen.clone()), request)
+            let follower = SenderComparisonFollower::new(session, CostToGo::new(kitchen.clone()), request);
+            ComparisonThreadHandle::start(follower.without_causes())
         });
-        let comparison = comparison.map(|follower| ComparisonThreadHandle::start(follower.without_causes()));
         let (display, health) = ParticipantDisplay::at(station);
         model.display = health;
-        model.gaze_pairing = station.tracker.pairing();
-        model.recorded_gaze = station.tracker.file().map(|file| file.summary.clone());
+        model.gaze_pairing = station.tracker.pairing.clone();
+        model.recorded_gaze = station.tracker.file.as_ref().map(|file| file.summary.clone());
         let clock = SessionClock::start(time);
         let (advisor, mut told) = AssistantLink::start(&engine, &LocalMinds);
         let (participant, faults) = ParticipantLink::start(engine.session(), &LocalMinds);
@@ -249,9 +244,9 @@ impl Live {
             live.input(Event::Unblinded { concepts: request.concepts(&spec) });
         }
         told.into_iter().for_each(|event| live.input(event));
-        live.carry_calibration(station.tracker.calibrated());
+        live.carry_calibration(station.tracker.calibrated.as_ref());
         live.build_display();
-        if let Some(link) = station.button_box.link() {
+        if let Some(link) = station.button_box.link.clone() {
             live.take_button_box(link);
         }
         live.begin_protocol(consent);
@@ -349,7 +344,7 @@ impl Live {
     fn close(mut self, leaving: LeavingReason) -> Result<LiveOutcome, LiveError> {
         if self.failed.is_none() {
             let session = self.engine.session();
-            if !session.is_step_done() && self.capture.is_on() && session.tracker.is_recording() {
+            if !session.is_step_done() && self.capture.is_on && session.tracker.is_recording() {
                 // A trial that is continued later needs a new recording of the tracker's program.
                 self.input(Event::Tracker(TrackerEvent::Recording { state: TrackerRecording::Ended }));
             }

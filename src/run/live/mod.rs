@@ -5,17 +5,9 @@
 //! with every event, gaze within 50 ms. Four times a second, the loop checks whether the log is still in place, and
 //! saves a log whose folder vanished.
 
-#[cfg(feature = "ur")]
-mod arm_news;
-#[cfg(not(feature = "ur"))]
-#[path = "without_arm.rs"]
-mod arm_news;
 mod capture_orders;
 #[cfg(feature = "display")]
 pub mod display;
-#[cfg(not(feature = "display"))]
-#[path = "without_display.rs"]
-mod display;
 mod filming;
 mod gaze_events;
 mod inputs;
@@ -26,8 +18,10 @@ mod recording;
 mod showing;
 #[cfg(feature = "rerun")]
 mod viewing;
-#[cfg(not(feature = "rerun"))]
-#[path = "without_rerun.rs"]
-mod viewing;
 
 pub(super) use live_session::run;
+
+#[cfg(not(feature = "display"))]
+use super::missing_features::display;
+#[cfg(not(feature = "rerun"))]
+use super::missing_features::rerun as viewing;

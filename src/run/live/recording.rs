@@ -143,7 +143,7 @@ impl Live {
         }
         let mut written = write(&mut self.log);
         if written.as_ref().is_err_and(RecordingWriteError::is_disk_full)
-            && self.viewing.as_mut().is_some_and(StreamedSession::give_up_file)
+            && self.viewing.as_mut().is_some_and(|viewing| viewing.give_up_file())
         {
             written = self.log.flush();
             let text =

@@ -81,9 +81,7 @@ impl Live {
         }
         self.model.observers = self.observers.as_ref().map(|status| status());
     }
-}
 
-impl Live {
     /// Uses the gaze accuracy check that was accepted in the previous recording again, since tracker and participant
     /// are the same (not for simulated participants, whose eyes are drawn anew).
     pub(super) fn carry_calibration(&mut self, before: Option<&AcceptedGazeCheck>) {

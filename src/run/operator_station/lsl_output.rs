@@ -9,7 +9,8 @@ use tomcom_session::{Session, SessionSpec};
 /// recording to the next, so that a recorder can continue.
 #[derive(Default)]
 pub(in crate::run) struct LslOutput {
-    library: Option<LslLibrary>,
+    /// `None` if the session does not use LSL.
+    pub library: Option<LslLibrary>,
     streams: Option<Rc<LslStreams>>,
 }
 
@@ -21,11 +22,6 @@ impl LslOutput {
     pub fn open(spec: &SessionSpec) -> Result<LslOutput, LslError> {
         let library = spec.uses_lsl().then(|| lsl::load(spec.lsl.as_ref())).transpose()?;
         Ok(LslOutput { library, streams: None })
-    }
-
-    /// The LSL library; `None` if the session does not use LSL.
-    pub fn library(&self) -> Option<LslLibrary> {
-        self.library
     }
 
     /// The LSL streams that this session sends; `None` if it sends none.

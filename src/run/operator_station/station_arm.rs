@@ -1,6 +1,7 @@
 //! The real arm at the operator's station: its driver, which stays connected from one recording to the next.
 
 use crate::run::error::LiveError;
+use crate::run::event_loop::or_never;
 use tomcom_core::kitchen::Kitchen;
 use tomcom_devices::ur::driver::UrDriver;
 use tomcom_devices::ur::link::UrConnection;
@@ -31,9 +32,6 @@ impl StationArm {
 
     /// Waits for the arm's next news; waits forever without a real arm.
     pub async fn next(&mut self) -> Option<ArmNews> {
-        match &mut self.0 {
-            Some(link) => link.next().await,
-            None => std::future::pending().await,
-        }
+        or_never(self.0.as_mut().map(UrConnection::next)).await
     }
 }

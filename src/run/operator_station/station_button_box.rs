@@ -9,8 +9,8 @@ use tomcom_session::SessionSpec;
 #[derive(Default)]
 pub(in crate::run) struct StationButtonBox {
     news: Option<Receiver<ButtonBoxMessage>>,
-    /// Whether it is there, for a recording that begins later.
-    link: Option<ButtonBoxMessage>,
+    /// The message that says whether the box is there, for a recording that begins later.
+    pub link: Option<ButtonBoxMessage>,
 }
 
 impl StationButtonBox {
@@ -27,10 +27,5 @@ impl StationButtonBox {
             self.link = Some(message.clone());
         }
         Some(message)
-    }
-
-    /// The message that says whether the box is there, for a recording that begins now.
-    pub fn link(&self) -> Option<ButtonBoxMessage> {
-        self.link.clone()
     }
 }

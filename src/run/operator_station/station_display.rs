@@ -4,9 +4,10 @@ use std::time::Instant;
 
 use crate::console::preflight::ParticipantDisplayHealth;
 use crate::run::error::LiveError;
+use crate::run::event_loop::or_never;
 use tomcom_core::base::time::SessionTime;
 pub(in crate::run) use tomcom_devices::display::PageInput;
-use tomcom_devices::display::{DisplayServer, ParticipantResponse};
+use tomcom_devices::display::{DisplayHandle, DisplayServer, ParticipantResponse};
 use tomcom_devices::sight::page_language::DisplayWords;
 use tomcom_devices::sight::{ConsentHold, consent_sight, scene, sight};
 use tomcom_session::settings::ParticipantKind;
@@ -34,9 +35,9 @@ impl StationDisplay {
         })
     }
 
-    /// The server of the participant's display; `None` if the session has no display.
-    pub fn server(&self) -> Option<&DisplayServer> {
-        self.0.as_ref()
+    /// What shows content on the participant's display; `None` if the session has no display.
+    pub fn screen(&self) -> Option<DisplayHandle> {
+        self.0.as_ref().map(DisplayServer::screen)
     }
 
     /// State of the participant's display for the wizard, before a page is connected; `None` if the session has no display.
@@ -50,15 +51,14 @@ impl StationDisplay {
 
     /// A function that says, whenever it is called, what is to be opened, while no page is connected.
     pub fn missing_page(&self) -> Box<dyn Fn() -> Option<String>> {
-        let screen = self.0.as_ref().map(DisplayServer::screen);
-        let Some((health, screen)) = self.health().zip(screen) else { return Box::new(|| None) };
+        let Some((health, screen)) = self.health().zip(self.screen()) else { return Box::new(|| None) };
         Box::new(move || health.missing().filter(|_| screen.counts().page.is_none()))
     }
 
     /// Lets the participant's page welcome a participant before the recording, or ask for consent to `text`; returns
     /// whether it asks. A page that stayed open thanks the participant before.
     pub fn welcome(&self, session: &Session, text: Option<&str>) -> bool {
-        let screen = self.0.as_ref().map(DisplayServer::screen);
+        let screen = self.screen();
         if let Some(screen) = &screen {
             screen.build(&scene(session));
             screen.show(&text.map_or_else(|| sight(session), |text| consent_sight(session, text)), None);
@@ -68,10 +68,7 @@ impl StationDisplay {
 
     /// Waits for the next input of the participant's page; waits forever if there is no page.
     pub async fn next(&mut self) -> Option<PageInput> {
-        match &mut self.0 {
-            Some(display) => display.next().await,
-            None => std::future::pending().await,
-        }
+        or_never(self.0.as_mut().map(DisplayServer::next)).await
     }
 }
 

@@ -7,6 +7,7 @@ use ratatui::CompletedFrame;
 use crate::console::preflight::ObserverStatus;
 use crate::console::view::theme::Theme;
 use crate::run::error::LiveError;
+use crate::run::event_loop::or_never;
 use crate::run::screen_frame::frame_of;
 pub(in crate::run) use tomcom_devices::observers::Remark;
 use tomcom_devices::observers::{MOST_OBSERVERS, ObserverServer};
@@ -35,10 +36,7 @@ impl StationObservers {
 
     /// Waits for the next remark of an observer; waits forever if there are no observers.
     pub async fn next(&mut self) -> Option<Remark> {
-        match &mut self.0 {
-            Some(server) => server.next().await,
-            None => std::future::pending().await,
-        }
+        or_never(self.0.as_mut().map(ObserverServer::next)).await
     }
 
     /// Drops the remarks that came before the shell that now begins: nobody records them any more.

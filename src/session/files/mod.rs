@@ -157,7 +157,7 @@ fn read_tutorial(session: &Path, text: &str, spec: &SessionSpec, kitchen: &Kitch
     tutorial.check().map_err(|error| wrong_setting(&path, &text, error))?;
     tutorial.check_kitchen(kitchen).map_err(|error| {
         let found =
-            format!("{}, in a tutorial that does not fit the kitchen \"{}\" of the session", error.found, kitchen.name);
+            format!("a tutorial that does not fit the kitchen \"{}\" of the session: {}", kitchen.name, error.found);
         let remedy = format!("{}; or, in {}, a tutorial of this kitchen", error.remedy, session.display());
         wrong_setting(&path, &text, SettingError { found, remedy: remedy.into(), ..error })
     })?;

@@ -16,7 +16,7 @@ use crate::{ArmStatus, Event, Session, TimelineEvent, TimestampedEvent, TrialPha
 use tomcom_core::base::text::{count, printable};
 use tomcom_core::communication::concept::{BenefitUnit, ConceptName};
 use tomcom_core::communication::offer::OfferedAdvice;
-use tomcom_core::communication::recommendation::Recommendation;
+use tomcom_core::communication::recommendation::{Recommendation, SignalOption};
 use tomcom_core::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, State};
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::ErrorCause;
@@ -132,6 +132,26 @@ pub fn words(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<S
     Some(printable(&words).into_owned())
 }
 
+/// The words of an event at which a replay stops, also of events without a line.
+pub fn step_words(stamped: &TimestampedEvent, follower: &SessionFollower) -> String {
+    words(stamped, follower).unwrap_or_else(|| match &stamped.event {
+        Event::Advised(advice) => {
+            let by = follower.session.spec.assistant.concept.name();
+            let best = advice.options.first();
+            let best =
+                best.map(|best| format!("; best would be: {}{}", wording::signal(&best.signal), worth(best, by)));
+            format!("advised: no signal{}", best.unwrap_or_default())
+        }
+        Event::RobotSafety { mode, .. } => format!("robot's arm: {} speed", mode.name().to_lowercase()),
+        Event::External(event) => format!("external {} answers", event.role().name()),
+        Event::Tracker(TrackerEvent::Fixation { duration_ms, .. }) => format!("fixation of {duration_ms:.0} ms"),
+        Event::Tracker(TrackerEvent::Blink { closed, .. }) => {
+            format!("blink {}", if *closed { "begins" } else { "ends" })
+        }
+        event => event.kind().replace('_', " "),
+    })
+}
+
 fn preflight(checks: &[PreflightCheck], overridden: bool) -> String {
     let not_ok = checks.iter().filter(|check| check.verdict != PreflightVerdict::Ok);
     let not_ok: Vec<String> = not_ok.map(|check| format!("{} ({})", check.name, check.found)).collect();
@@ -209,7 +229,14 @@ fn advised(kitchen: &Kitchen, advice: &Recommendation, by: ConceptName) -> Optio
     let best = advice.best.as_ref()?;
     let what = wording::signal(best);
     // An external concept can name a signal without its value.
-    let worth = advice.options.iter().find(|option| option.signal == *best).map(|option| match by.unit() {
+    let worth = advice.options.iter().find(|option| option.signal == *best).map(|option| worth(option, by));
+    let reason = advice.reason.as_ref().map(|reason| wording::reason(kitchen, reason).words());
+    let reason = reason.or_else(|| advice.words.clone()).map_or(String::new(), |reason| format!(": {reason}"));
+    Some(format!("advised: {what}{}{reason}", worth.unwrap_or_default()))
+}
+
+fn worth(option: &SignalOption, by: ConceptName) -> String {
+    match by.unit() {
         BenefitUnit::Deviation => format!(", belief off by {:.2}", option.benefit),
         BenefitUnit::Presses | BenefitUnit::None if option.rollouts == 0 => {
             format!(", saves {:.1} presses", option.benefit)
@@ -217,10 +244,7 @@ fn advised(kitchen: &Kitchen, advice: &Recommendation, by: ConceptName) -> Optio
         BenefitUnit::Presses | BenefitUnit::None => {
             format!(", saves {:.1} presses (±{:.1})", option.benefit, option.standard_error)
         }
-    });
-    let reason = advice.reason.as_ref().map(|reason| wording::reason(kitchen, reason).words());
-    let reason = reason.or_else(|| advice.words.clone()).map_or(String::new(), |reason| format!(": {reason}"));
-    Some(format!("advised: {what}{}{reason}", worth.unwrap_or_default()))
+    }
 }
 
 fn offered(offer: &OfferedAdvice) -> String {

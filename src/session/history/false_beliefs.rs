@@ -1,11 +1,15 @@
 //! The false beliefs of the estimate as intervals of time: the one source for replays, the review and exports.
 
+use std::collections::BTreeSet;
+
 use crate::history::wording;
 use crate::{Event, Session, TimestampedEvent, TrialPhase};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::recommendation::aspects_told;
 use tomcom_core::kitchen::{Agent, AspectId, Kitchen, State};
-use tomcom_core::measures::sequences::FALSE_BELOW;
+use tomcom_core::measures::attribution::ErrorCause;
+use tomcom_core::measures::sequences::{FALSE_BELOW, FalseBeliefTracker};
+use tomcom_core::mind::belief::Belief;
 use tomcom_core::mind::dirichlet::DirichletBelief;
 
 /// Where only gaze changes the estimate, false beliefs begin and end at the first sample of such a period, in nanoseconds;
@@ -113,9 +117,7 @@ impl EstimatedFalseBeliefs {
             let is_false = is_trial && belief.p_truth(kitchen, state, aspect) < FALSE_BELOW;
             let held = is_false.then(|| {
                 let (mean, truth) = (belief.aspects[index].mean(), kitchen.true_value(state, aspect));
-                let others = (0..mean.len()).filter(|&value| value != truth);
-                let thinks = others.reduce(|best, value| if mean[value] > mean[best] { value } else { best });
-                (thinks.unwrap_or(truth), truth)
+                (likeliest_wrong(mean, truth), truth)
             });
             let open = self.last[index].map(|last| &mut self.all[last]).filter(|last| last.ended.is_none());
             if open.as_ref().map(|open| (open.thinks, open.truth)) == held {
@@ -205,6 +207,38 @@ impl EstimatedFalseBeliefs {
         }
         Some(until)
     }
+}
+
+/// What a participant that records its beliefs believed wrong that caused an error, in words. `before`: the kitchen before
+/// the press.
+pub(crate) fn told_by_participant(
+    session: &Session,
+    before: State,
+    belief: &Belief,
+    cause: ErrorCause,
+    episodes: &FalseBeliefTracker,
+) -> Option<String> {
+    let ErrorCause::Belief { target, with, .. } = cause else { return None };
+    let kitchen = &session.kitchen;
+    // Two orders of one dish share its recipe.
+    let targets = [Some(target), with].into_iter().flatten();
+    let aspects: BTreeSet<AspectId> = targets.flat_map(|target| target.aspects(kitchen)).collect();
+    let told = |aspect: AspectId| {
+        let held = episodes.all().find(|one| one.aspect == aspect && one.corrected.is_none())?;
+        let (values, truth) = (belief.distribution(aspect), kitchen.true_value(before, aspect));
+        let thinks = likeliest_wrong(values, truth);
+        let (thinks, truth) = wording::contrast(kitchen, aspect, thinks, truth);
+        let since = session.trial_clock_at(held.began);
+        Some(format!("{}: thinks {thinks}, {truth} since {since}", wording::aspect(kitchen, before, aspect)))
+    };
+    let told: Vec<String> = aspects.into_iter().filter_map(told).collect();
+    (!told.is_empty()).then(|| format!("believed wrong, by the participant: {}", told.join("; ")))
+}
+
+/// The most probable of the wrong values; of equally probable ones the first.
+fn likeliest_wrong(values: &[f64], truth: usize) -> usize {
+    let others = (0..values.len()).filter(|&value| value != truth);
+    others.reduce(|best, value| if values[value] > values[best] { value } else { best }).unwrap_or(truth)
 }
 
 /// What corrected a belief about an aspect whose true value stayed, at this event. Events that are no evidence come after

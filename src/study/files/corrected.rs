@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::files::recordings;
 use crate::frozen_plan::{PlaceInPlan, RecordedPlan};
+use crate::standing;
 use tomcom_session::files::file_error::{FileResult, read_text};
 use tomcom_session::files::near_path::SESSIONS;
 use tomcom_session::files::parse::parse;
@@ -24,12 +25,14 @@ pub fn remarks(recording: &Path, correction: &CodeCorrection) -> FileResult<Vec<
     let kind_of = |header: &LogHeader| (header.session.participant.kind, header.session.seed);
     let others = recordings::of_folder(beside)?.into_iter().filter(|other| *other != own);
     // A neighbour that cannot be read is reported when it is read.
-    let others = others.filter_map(|other| Some(LogReader::open(&other).ok()?.header));
+    let others = others.filter_map(|other| Some((LogReader::open(&other).ok()?.header, other)));
     let is_like = |other: &LogHeader| {
         let is_of_plan = other.session.step.as_ref().is_some_and(|step| step.plan == *plan);
         is_of_plan && kind_of(other) == kind_of(&log.header)
     };
-    let others: Vec<RecordedPlan> = others.filter(is_like).map(|other| RecordedPlan::from_header(&other)).collect();
+    let others = others.filter(|(header, _)| is_like(header));
+    let others: Vec<(RecordedPlan, PathBuf)> =
+        others.map(|(header, path)| (RecordedPlan::from_header(&header), path)).collect();
     let mut told = Vec::new();
     let plans: Vec<(PathBuf, PlanSpec)> =
         [beside, Path::new(SESSIONS)].into_iter().flat_map(|folder| plans_in(folder, plan)).collect();
@@ -44,17 +47,21 @@ pub fn remarks(recording: &Path, correction: &CodeCorrection) -> FileResult<Vec<
             recording.display(),
             person_code::did_you_mean(after, &codes)
         )),
-        None if !others.iter().any(|other| other.participant == *after && is_known(other)) => told.push(format!(
+        None if !others.iter().any(|(other, _)| other.participant == *after && is_known(other)) => told.push(format!(
             "no other recording of the plan \"{plan}\" in {} is of {after}: make sure that {after} is a participant of the plan",
             beside.display()
         )),
         _ => {}
     }
+    // What the analysis leaves out is no recording of a trial.
+    let counts = |recording: &Path| !matches!(standing::left_out(recording), Ok(Some(_)));
     let has = |code: &String| {
         let is_it = |place: PlaceInPlan| place.period == step.period;
-        others.iter().any(|other| other.participant == *code && other.place.is_some_and(is_it))
+        let is_of = |other: &RecordedPlan| other.participant == *code && other.place.is_some_and(is_it);
+        others.iter().any(|(other, path)| is_of(other) && counts(path))
     };
-    if let Some(period) = step.period.filter(|_| has(after)) {
+    let period = step.period.filter(|_| counts(recording));
+    if let Some(period) = period.filter(|_| has(after)) {
         told.push(format!(
             "{after} has a recording of trial {period} of the plan \"{plan}\" already, beside this one, so tomcom study refuses both: leave the \
              other one out (tomcom exclude), correct its code, too, or take this correction back (tomcom correct {} --undo)",
@@ -62,7 +69,7 @@ pub fn remarks(recording: &Path, correction: &CodeCorrection) -> FileResult<Vec<
         ));
     }
     let was_wanted = plans.is_empty() || codes.contains(before);
-    if let Some(period) = step.period.filter(|_| was_wanted && !has(before)) {
+    if let Some(period) = period.filter(|_| was_wanted && !has(before)) {
         told.push(format!("the plan \"{plan}\" has no recording of trial {period} of {before} any more"));
     }
     Ok(told)

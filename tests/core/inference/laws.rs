@@ -7,99 +7,16 @@ use tomcom_core::base::rng::{Stream, stream};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::{
-    Agent, AspectId, ButtonId, ContentId, DishId, Kitchen, LocationId, OrderContent, Press, State,
-};
+use tomcom_core::kitchen::{Agent, AspectId, ButtonId, ContentId, Kitchen, LocationId, OrderContent, Press};
 use tomcom_core::mind::filter::BeliefFilter;
 use tomcom_core::mind::model::PAPER_2021;
 use tomcom_core::mind::model::{HumanModel, InferenceSettings};
 use tomcom_core::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
 
-use super::{any_number, any_state, check_proper, looks_at_nothing};
+use super::{Bench, any_number, any_state, at, looks_at_nothing};
 use crate::files::kitchen;
 
 const KITCHENS: [&str; 2] = ["sushi", "burger"];
-
-fn at(seconds: f64) -> SessionTime {
-    SessionTime::from_secs_f64(seconds)
-}
-
-/// A filter at work, with the kitchen as it truly is.
-struct Bench {
-    kitchen: Arc<Kitchen>,
-    filter: BeliefFilter,
-    cost: CostToGo,
-    state: State,
-}
-
-impl Bench {
-    fn new(name: &str, model: HumanModel) -> Bench {
-        Bench::seeded(name, model, 3)
-    }
-
-    fn seeded(name: &str, model: HumanModel, seed: u64) -> Bench {
-        let kitchen = kitchen(name);
-        let filter = BeliefFilter::new(kitchen.clone(), model, seed);
-        let (cost, state) = (CostToGo::new(kitchen.clone()), kitchen.empty_state());
-        let mut bench = Bench { kitchen, filter, cost, state };
-        bench.observe(0.0, ObservedEvidence::Started { state });
-        bench
-    }
-
-    fn observe(&mut self, seconds: f64, what: ObservedEvidence) {
-        self.filter.observe(&Observation { time: at(seconds), what }, &mut self.cost);
-    }
-
-    fn location(&self, name: &str) -> LocationId {
-        self.kitchen.location_named(name).expect("a location")
-    }
-
-    fn aspect(&self, name: &str) -> AspectId {
-        let index = self.kitchen.aspects.iter().position(|aspect| aspect.name == name).expect("an aspect");
-        AspectId(index as u8)
-    }
-
-    /// The expected probability of a value.
-    fn p(&self, aspect: &str, label: &str) -> f64 {
-        let aspect = self.aspect(aspect);
-        let value = self.kitchen.aspects[aspect.index()].labels.iter().position(|other| other == label);
-        self.filter.belief().aspect(aspect).mean()[value.expect("a value")]
-    }
-
-    fn order(&mut self, seconds: f64, order: &str, dish: &str) {
-        let dish = self.kitchen.dishes.iter().position(|other| other.name == dish).expect("a dish");
-        let order = self.location(order);
-        self.state.set_order(order, OrderContent::Dish(DishId(dish as u8)));
-        self.observe(seconds, ObservedEvidence::Displayed { state: self.state });
-    }
-
-    fn press(&mut self, seconds: f64, agent: Agent, name: &str) {
-        let button = self.kitchen.button_named(agent, name).expect("a button");
-        let press = self.kitchen.try_press(self.state, agent, button);
-        self.state = press.after;
-        self.observe(seconds, ObservedEvidence::Pressed(press));
-    }
-
-    /// Looks at the middle of a location for some time, `hz` samples a second.
-    fn look(&mut self, from_s: f64, seconds: f64, name: &str, hz: f64) {
-        let [x, y] = self.kitchen.location(self.location(name)).display.centre();
-        let sample = GazeSample::new(x, y, 1.0);
-        for step in 0..(seconds * hz).round() as u32 {
-            let time = from_s + f64::from(step) / hz;
-            self.observe(time, ObservedEvidence::Gaze { sample, taken: at(time) });
-        }
-    }
-
-    fn check(&self, story: &str) {
-        for (aspect, of_aspect) in self.kitchen.aspects.iter().zip(&self.filter.belief().aspects) {
-            check_proper(of_aspect, &format!("{story}: {}", aspect.name));
-        }
-        if let Some(evidence) = self.filter.evidence() {
-            assert!(evidence.log_p.is_finite() && evidence.log_p <= 0.0, "{story}: {evidence:?}");
-            assert!(evidence.effective >= 1.0 - 1e-9, "{story}: {evidence:?}");
-        }
-    }
-}
 
 /// Coarse, for tests of many presses.
 fn coarse() -> HumanModel {

@@ -1,22 +1,13 @@
 //! Unknown gaze: nothing is concluded from a look that nobody could have seen.
 
-use std::sync::Arc;
-
-use tomcom_core::base::time::SessionTime;
 use tomcom_core::gaze::GazeSample;
-use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::{Agent, Kitchen, State};
+use tomcom_core::kitchen::Agent;
 use tomcom_core::mind::dirichlet::Dirichlet;
-use tomcom_core::mind::filter::BeliefFilter;
 use tomcom_core::mind::filter::unseen::UnknownGazeTimer;
 use tomcom_core::mind::model::{HumanModel, LookingModel};
-use tomcom_core::mind::observation::{Observation, ObservedEvidence};
+use tomcom_core::mind::observation::ObservedEvidence;
 
-use crate::files::kitchen;
-
-fn at(seconds: f64) -> SessionTime {
-    SessionTime::from_secs_f64(seconds)
-}
+use super::{Bench, at};
 
 /// A sample at the middle of the display's right edge, where no location is near.
 fn sample(confidence: f64) -> GazeSample {
@@ -38,59 +29,32 @@ fn even(rate_hz: f64) -> HumanModel {
 }
 
 /// A trial in which the robot takes rice after a second.
-struct Trial {
-    kitchen: Arc<Kitchen>,
-    filter: BeliefFilter,
-    cost: CostToGo,
-    state: State,
+fn trial(model: &HumanModel, before: impl FnOnce(&mut Bench)) -> Bench {
+    let mut bench = Bench::new("sushi", model.clone());
+    before(&mut bench);
+    bench.press(1.0, Agent::Robot, "take rice");
+    bench
 }
 
-impl Trial {
-    fn with(model: &HumanModel, before: impl FnOnce(&mut Trial)) -> Trial {
-        let kitchen = kitchen("sushi");
-        let (cost, state) = (CostToGo::new(kitchen.clone()), kitchen.empty_state());
-        let filter = BeliefFilter::new(kitchen.clone(), model.clone(), 3);
-        let mut trial = Trial { kitchen, filter, cost, state };
-        trial.observe(0.0, ObservedEvidence::Started { state });
-        before(&mut trial);
-        let button = trial.kitchen.button_named(Agent::Robot, "take rice").expect("a button");
-        let press = trial.kitchen.try_press(state, Agent::Robot, button);
-        trial.state = press.after;
-        trial.observe(1.0, ObservedEvidence::Pressed(press));
-        trial
-    }
-
-    fn observe(&mut self, seconds: f64, what: ObservedEvidence) {
-        self.filter.observe(&Observation { time: at(seconds), what }, &mut self.cost);
-    }
-
-    fn gaze(&mut self, from_s: f64, to_s: f64, sample: GazeSample) {
-        for step in 0..((to_s - from_s) * 60.0) as u32 {
-            let time = from_s + f64::from(step) / 60.0;
-            self.observe(time, ObservedEvidence::Gaze { sample, taken: at(time) });
-        }
-    }
-
+impl Bench {
     fn advance(&mut self, seconds: f64) {
         self.filter.advance(at(seconds), &mut self.cost);
     }
 
     fn robots_hand(&self) -> &Dirichlet {
-        &self.filter.belief().aspects[self.kitchen.hands[Agent::Robot.index()].index()]
+        self.filter.belief().aspect(self.aspect("robot_hand"))
     }
 
     /// The expected probability that the robot's hand holds rice.
     fn sees_rice(&self) -> f64 {
-        let hand = self.kitchen.hands[Agent::Robot.index()];
-        let value = self.kitchen.aspects[hand.index()].index_of(self.state.code(hand)).expect("rice");
-        self.robots_hand().mean()[value]
+        self.p("robot_hand", "rice raw")
     }
 }
 
 #[test]
 fn a_gap_is_a_hazard_with_exact_moments() {
     let model = even(0.7);
-    let mut trial = Trial::with(&model, |_| ());
+    let mut trial = trial(&model, |_| ());
     let before = trial.robots_hand().clone();
     let rice = trial.sees_rice();
     trial.advance(3.0);
@@ -108,13 +72,13 @@ fn a_gap_is_a_hazard_with_exact_moments() {
 #[test]
 fn dividing_a_gap_changes_nothing() {
     let model = HumanModel::default();
-    let mut whole = Trial::with(&model, |_| ());
+    let mut whole = trial(&model, |_| ());
     whole.advance(9.0);
-    let mut divided = Trial::with(&model, |_| ());
-    divided.gaze(1.2, 4.0, sample(0.1));
+    let mut divided = trial(&model, |_| ());
+    divided.gaze(1.2, 2.8, sample(0.1), 60.0);
     divided.observe(5.0, ObservedEvidence::DisplayInView(true));
-    divided.gaze(6.0, 6.5, GazeSample::new(f64::NAN, 0.5, 1.0));
-    divided.gaze(7.0, 8.0, sample(f64::NAN));
+    divided.gaze(6.0, 0.5, GazeSample::new(f64::NAN, 0.5, 1.0), 60.0);
+    divided.gaze(7.0, 1.0, sample(f64::NAN), 60.0);
     divided.advance(9.0);
     for (one, other) in whole.filter.belief().aspects.iter().zip(&divided.filter.belief().aspects) {
         for (a, b) in one.mean().iter().zip(other.mean()) {
@@ -127,19 +91,19 @@ fn dividing_a_gap_changes_nothing() {
 #[test]
 fn a_look_elsewhere_is_evidence_and_a_missing_sample_is_not() {
     let model = even(0.5);
-    let rice_after = |what: &dyn Fn(&mut Trial)| {
-        let mut trial = Trial::with(&model, |trial| trial.gaze(0.0, 1.0, sample(1.0)));
+    let rice_after = |what: &dyn Fn(&mut Bench)| {
+        let mut trial = trial(&model, |trial| trial.gaze(0.0, 1.0, sample(1.0), 60.0));
         let before = trial.sees_rice();
         what(&mut trial);
         trial.advance(4.0);
         trial.sees_rice() - before
     };
     let beside = GazeSample::new(1.5, 0.5, 1.0);
-    assert!(rice_after(&|trial| trial.gaze(1.0, 4.0, beside)) < 1e-3, "off the display");
-    assert!(rice_after(&|trial| trial.gaze(1.0, 4.0, sample(1.0))) < 1e-3, "elsewhere on it");
+    assert!(rice_after(&|trial| trial.gaze(1.0, 3.0, beside, 60.0)) < 1e-3, "off the display");
+    assert!(rice_after(&|trial| trial.gaze(1.0, 3.0, sample(1.0), 60.0)) < 1e-3, "elsewhere on it");
     let unknown = rice_after(&|_| ());
     assert!(unknown > 0.5, "{unknown}");
-    let low = rice_after(&|trial| trial.gaze(1.0, 4.0, sample(0.3)));
+    let low = rice_after(&|trial| trial.gaze(1.0, 3.0, sample(0.3), 60.0));
     assert!((low - unknown).abs() < 0.02, "samples of no confidence tell as little as none: {low} and {unknown}");
     let away = rice_after(&|trial| trial.observe(1.0, ObservedEvidence::DisplayInView(false)));
     assert!((0.02..unknown / 2.0).contains(&away), "a head that is turned away looks less: {away}");

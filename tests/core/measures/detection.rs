@@ -1,11 +1,10 @@
 //! How well an estimate finds false beliefs: areas under the curve, calibration, thresholds.
 
 use tomcom_core::base::maths::regularized_incomplete_beta;
-use tomcom_core::kitchen::{AspectId, ButtonId, Kitchen};
+use tomcom_core::kitchen::{ButtonId, Kitchen};
 use tomcom_core::measures::detection::{
-    BeliefsBeforePress, EstimateBeforePress, FalseBeliefDetection, TrialBeliefs, aspect_groups,
+    BeliefsBeforePress, Calibration, EstimateBeforePress, FalseBeliefDetection, TrialBeliefs, aspect_groups, auc,
 };
-use tomcom_core::measures::detection::{Calibration, auc};
 use tomcom_core::measures::flags::{FlagThresholds, ThresholdChoice, ThresholdSource, chosen_thresholds};
 use tomcom_core::mind::{AspectEstimate, RecordedEstimate};
 
@@ -40,14 +39,15 @@ fn the_calibration_error_weighs_bins_by_their_predictions() {
     assert_eq!(Calibration::from_predictions([(0.99, true)], [0.05, 0.95], 10).ece, None);
 }
 
-/// A trial about two aspects of a kitchen: letters of the location, then of the recipe, then the estimates in tenths.
+/// A trial about the pot and a recipe: letters of the pot, then of the recipe, then the estimates in tenths.
 /// `.` is believed right, `w` wrong, `E` wrong and the reason of an error.
-fn trial(kitchen: &Kitchen, place: AspectId, recipe: AspectId, text: [&str; 4]) -> TrialBeliefs {
+fn trial(kitchen: &Kitchen, text: [&str; 4]) -> TrialBeliefs {
+    let aspects = ["cooking_pot", "recipe of crab maki"].map(|name| aspect(kitchen, name));
     let letters: Vec<Vec<char>> = text.iter().map(|letters| letters.chars().collect()).collect();
     let press = |index: usize| {
         let (mut held, mut p_false) = (vec![0.9; kitchen.aspects.len()], vec![0.0; kitchen.aspects.len()]);
         let mut errs_about = Vec::new();
-        for (group, aspect) in [place, recipe].into_iter().enumerate() {
+        for (group, aspect) in aspects.into_iter().enumerate() {
             if letters[group][index] != '.' {
                 held[aspect.index()] = 0.2;
             }
@@ -80,9 +80,8 @@ fn judged_on_itself(kitchen: &Kitchen, trial: TrialBeliefs) -> FalseBeliefDetect
 #[test]
 fn flags_catch_an_episode_between_its_beginning_and_the_third_error() {
     let kitchen = kitchen("sushi");
-    let (place, recipe) = (aspect(&kitchen, "cooking_pot"), aspect(&kitchen, "recipe of crab maki"));
     let check = |text: [&str; 4], episodes: u64, caught: Option<f64>, false_flags: f64| {
-        let trials = [trial(&kitchen, place, recipe, text)];
+        let trials = [trial(&kitchen, text)];
         let thresholds = FlagThresholds { locations: 0.5, recipes: 0.3 };
         let flags =
             FalseBeliefDetection::from_trials(&kitchen, &trials, Some(ThresholdChoice::Given(thresholds))).flags;
@@ -106,11 +105,10 @@ fn flags_catch_an_episode_between_its_beginning_and_the_third_error() {
 #[test]
 fn thresholds_are_chosen_that_catch_most_within_what_is_allowed() {
     let kitchen = kitchen("sushi");
-    let (place, recipe) = (aspect(&kitchen, "cooking_pot"), aspect(&kitchen, "recipe of crab maki"));
     let quiet = ".".repeat(60);
     let zero = "0".repeat(60);
     let text = [&format!("{quiet}EEw."), &format!("{quiet}...."), &format!("{zero}0702"), &format!("{zero}0000")];
-    let found = judged_on_itself(&kitchen, trial(&kitchen, place, recipe, text.map(String::as_str)));
+    let found = judged_on_itself(&kitchen, trial(&kitchen, text.map(String::as_str)));
     let flags = &found.flags;
     assert_eq!((flags.episodes, flags.flagged_before_third_error), (Some(1), Some(1.0)), "{flags:?}");
     assert_eq!(
@@ -134,12 +132,11 @@ fn thresholds_are_chosen_that_catch_most_within_what_is_allowed() {
 #[test]
 fn what_may_be_flagged_wrongly_is_a_share_of_the_time_of_all_aspects_together() {
     let kitchen = kitchen("sushi");
-    let (place, recipe) = (aspect(&kitchen, "cooking_pot"), aspect(&kitchen, "recipe of crab maki"));
     let of = |doubted: usize| {
         let (right, known) = (".".repeat(64), "0".repeat(66));
         let estimates = format!("{}{}33", "0".repeat(64 - doubted), "3".repeat(doubted));
         let text = [&format!("{right}.."), &format!("{right}EE"), &known, &estimates];
-        judged_on_itself(&kitchen, trial(&kitchen, place, recipe, text.map(String::as_str))).flags
+        judged_on_itself(&kitchen, trial(&kitchen, text.map(String::as_str))).flags
     };
     // 66 presses and 16 aspects: 1,056 pairs, of which 52 may be flagged wrongly; of the recipes' alone 5 % were 19.
     assert_eq!(of(40).flagged_before_third_error, Some(1.0));
@@ -150,12 +147,11 @@ fn what_may_be_flagged_wrongly_is_a_share_of_the_time_of_all_aspects_together() 
 #[test]
 fn thresholds_are_judged_on_the_other_half_of_the_participants() {
     let kitchen = kitchen("sushi");
-    let (place, recipe) = (aspect(&kitchen, "cooking_pot"), aspect(&kitchen, "recipe of crab maki"));
     let zero = "0".repeat(64);
     let one = |doubted: &str, estimates: &str| {
         let quiet = ".".repeat(60);
         let text = [&format!("{quiet}EEw."), &".".repeat(64), &format!("{doubted:0<60}{estimates}"), &zero];
-        trial(&kitchen, place, recipe, text.map(String::as_str))
+        trial(&kitchen, text.map(String::as_str))
     };
     // The first participant's episodes are found from 0.7 on, and right beliefs are doubted with 0.3; the second's from 0.2 on.
     let (high, low) = (one("0333", "0700"), one("", "0200"));

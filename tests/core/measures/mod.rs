@@ -25,12 +25,7 @@ fn at(seconds: f64) -> SessionTime {
 }
 
 fn aspect(kitchen: &Kitchen, name: &str) -> AspectId {
-    let index = kitchen.aspects.iter().position(|aspect| aspect.name == name);
-    AspectId(index.unwrap_or_else(|| panic!("no aspect {name}")) as u8)
-}
-
-fn dish(kitchen: &Kitchen, name: &str) -> DishId {
-    DishId(kitchen.dishes.iter().position(|dish| dish.name == name).expect("a dish") as u8)
+    kitchen.aspect_named(name).unwrap_or_else(|| panic!("no aspect {name}"))
 }
 
 /// Places and orders given as "name: content".
@@ -39,7 +34,7 @@ fn state(kitchen: &Kitchen, there: &[&str]) -> State {
     for (name, content) in there.iter().filter_map(|one| one.split_once(": ")) {
         let location = kitchen.location_named(name).expect("a location");
         match kitchen.orders.contains(&location) {
-            true => state.set_order(location, OrderContent::Dish(dish(kitchen, content))),
+            true => state.set_order(location, OrderContent::Dish(kitchen.dish_named(content).expect("a dish"))),
             false => state.set_content(location, kitchen.content_named(content).expect("a content")),
         }
     }
@@ -49,8 +44,7 @@ fn state(kitchen: &Kitchen, there: &[&str]) -> State {
 /// Everything as it is but what is given as "aspect: value", each believed to `sure`; what is left is spread evenly.
 fn belief(kitchen: &Kitchen, state: State, falsely: &[&str], sure: f64) -> Belief {
     let mut belief = Belief::of_truth(kitchen, state);
-    for index in 0..kitchen.aspects.len() {
-        let (id, one) = (AspectId(index as u8), &kitchen.aspects[index]);
+    for (id, one) in kitchen.aspect_ids().zip(&kitchen.aspects) {
         let held = falsely.iter().filter_map(|told| told.split_once(": ")).find(|(name, _)| *name == one.name);
         let value = match held {
             Some((name, label)) => {
@@ -165,8 +159,7 @@ fn decisions_are_distributions_and_exact_sums_agree_with_many_draws() {
         assert!((weight - 1.0).abs() < 1e-12);
         let exact = ChoiceModel::new(&kitchen, &exact_model).probabilities(&mut cost, &exact_worlds);
         // A trace of everything else keeps the sum from being exact, and leaves it where it was.
-        for index in 0..kitchen.aspects.len() {
-            let id = AspectId(index as u8);
+        for id in kitchen.aspect_ids() {
             let weights: Vec<f64> =
                 held.distribution(id).iter().map(|p| p + 3e-3 / kitchen.aspects.len() as f64).collect();
             held.set(id, &weights);

@@ -10,7 +10,6 @@ mod sessions;
 
 use std::sync::LazyLock;
 
-use tomcom::run::files::read_kitchen;
 use tomcom_arm::controller::{ArmController, ControlCycleResult};
 use tomcom_arm::physics::CYCLE_S;
 use tomcom_arm::physics::bodies::HandPose;
@@ -20,8 +19,7 @@ use tomcom_core::robot::ArmPhase;
 
 use crate::support::*;
 
-static SUSHI: LazyLock<Kitchen> =
-    LazyLock::new(|| read_kitchen(Path::new("layouts/sushi.toml")).expect("the kitchen loads").kitchen);
+static SUSHI: LazyLock<Arc<Kitchen>> = LazyLock::new(|| kitchen("sushi"));
 /// Building one takes a while, as it settles.
 static AT_REST: LazyLock<ArmController> = LazyLock::new(|| ArmController::new(&SUSHI));
 

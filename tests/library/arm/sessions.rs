@@ -11,12 +11,11 @@ use super::{STILL_RAD, SUSHI};
 use crate::support::*;
 
 /// A session at the keyboard, in which nobody presses anything by himself, in this kitchen.
-fn session(kitchen: Kitchen) -> SessionEngine {
+fn session(kitchen: Arc<Kitchen>) -> SessionEngine {
     let mut spec = session_file("default").spec;
     assert_eq!(spec.robot.arm, ArmKind::Physics);
     (spec.participant.kind, spec.participant.gaze) = (ParticipantKind::Keyboard, GazeSource::None);
     spec.assistant.shadow = ShadowMode::Off;
-    let kitchen = Arc::new(kitchen);
     SessionEngine::new(kitchen.clone(), spec, 0, CostToGo::new(kitchen))
 }
 
@@ -25,21 +24,19 @@ fn until(engine: &mut SessionEngine, at_most_s: f64, is_it: impl Fn(&Event) -> b
     let end = engine.session().time + at(at_most_s);
     let mut seen = Vec::new();
     while engine.next_due().is_some_and(|due| due <= end) {
-        let events = engine.fire().into_iter().map(|stamped| stamped.event);
-        seen.extend(events);
+        seen.extend(engine.fire().into_iter().map(|stamped| stamped.event));
         if seen.iter().any(&is_it) {
             return seen;
         }
     }
     // The time goes by all the same.
-    seen.extend(
-        engine
-            .input(end, Event::Marker { note: String::new(), observer: None })
-            .events
-            .into_iter()
-            .map(|stamped| stamped.event),
-    );
+    let marked = engine.input(end, Event::Marker { note: String::new(), observer: None }).events;
+    seen.extend(marked.into_iter().map(|stamped| stamped.event));
     seen
+}
+
+fn arm(engine: &mut SessionEngine) -> &mut ArmController {
+    engine.robot().arm().expect("an arm in the physics")
 }
 
 fn is_robots_press(event: &Event) -> bool {
@@ -47,18 +44,12 @@ fn is_robots_press(event: &Event) -> bool {
 }
 
 fn aborts(events: &[Event]) -> Vec<AbortReason> {
-    let reason = |event: &Event| match event {
-        Event::RobotAborts { reason, .. } => Some(*reason),
-        _ => None,
-    };
+    let reason = |event: &Event| if let Event::RobotAborts { reason, .. } = event { Some(*reason) } else { None };
     events.iter().filter_map(reason).collect()
 }
 
 fn modes(events: &[Event]) -> Vec<SafetyMode> {
-    let mode = |event: &Event| match event {
-        Event::RobotSafety { mode, .. } => Some(*mode),
-        _ => None,
-    };
+    let mode = |event: &Event| if let Event::RobotSafety { mode, .. } = event { Some(*mode) } else { None };
     events.iter().filter_map(mode).collect()
 }
 
@@ -103,9 +94,9 @@ fn check_stop(engine: &mut SessionEngine, seen: &[Event], mode: SafetyMode, reas
     let there = engine.session().robot.arm.last.expect("it was told").1.joints;
     let meanwhile = until(engine, 30.0, |event| is_robots_press(event) || matches!(event, Event::RobotIntends { .. }));
     assert!(!meanwhile.iter().any(|event| is_robots_press(event) || matches!(event, Event::RobotIntends { .. })));
-    let now = engine.robot().arm().expect("an arm in the physics").joints();
+    let now = arm(engine).joints();
     assert!((0..JOINTS).all(|joint| (now[joint] - there[joint]).abs() < STILL_RAD), "it stays where it is");
-    engine.robot().arm().expect("an arm in the physics").world().fail(None);
+    arm(engine).world().fail(None);
     let resumed = input(engine, Event::RobotResumed);
     assert_eq!(modes(&resumed), [SafetyMode::Normal]);
     let after = until(engine, 20.0, is_robots_press);
@@ -116,7 +107,7 @@ fn check_stop(engine: &mut SessionEngine, seen: &[Event], mode: SafetyMode, reas
 fn a_session_stops_its_arm_when_it_touches_somebody() {
     let mut engine = on_its_way();
     // Somebody whose hand the arm does not see coming, on the button that it goes for.
-    engine.robot().arm().expect("an arm in the physics").watches_hands = false;
+    arm(&mut engine).watches_hands = false;
     let board = SUSHI.button_named(Agent::Robot, "assembly_board").expect("a shared button");
     let name = SUSHI.button(Agent::Robot, board).name.clone();
     let pressed = || Event::Press { agent: Agent::Human, button: name.clone(), at_ns: None, button_box: false };
@@ -144,7 +135,7 @@ fn a_session_stops_its_arm_at_the_wizards_key_and_where_a_joint_is_at_fault() {
     let seen = input(&mut engine, Event::RobotStopped);
     check_stop(&mut engine, &seen, SafetyMode::EmergencyStop, AbortReason::Stopped);
     let mut engine = on_its_way();
-    engine.robot().arm().expect("an arm in the physics").world().fail(Some(1));
+    arm(&mut engine).world().fail(Some(1));
     let seen = until(&mut engine, 2.0, |event| matches!(event, Event::RobotAborts { .. }));
     assert!(seen.iter().any(|event| matches!(event, Event::RobotSafety { joint: Some(2), .. })));
     check_stop(&mut engine, &seen, SafetyMode::Fault, AbortReason::Fault);
@@ -153,7 +144,7 @@ fn a_session_stops_its_arm_at_the_wizards_key_and_where_a_joint_is_at_fault() {
 #[test]
 fn the_wizards_key_counts_where_the_arm_has_stopped_by_itself_too() {
     let mut engine = on_its_way();
-    engine.robot().arm().expect("an arm in the physics").world().fail(Some(1));
+    arm(&mut engine).world().fail(Some(1));
     until(&mut engine, 2.0, |event| matches!(event, Event::RobotAborts { .. }));
     assert_eq!(modes(&input(&mut engine, Event::RobotStopped)), [SafetyMode::EmergencyStop]);
     let again = engine.input(engine.session().time, Event::RobotStopped);
@@ -162,10 +153,10 @@ fn the_wizards_key_counts_where_the_arm_has_stopped_by_itself_too() {
 
 /// In a session whose kitchen or arm is changed so, every press is given up for this reason, and tried again later.
 fn check_given_up(change: impl Fn(&mut Kitchen), meddle: impl Fn(&mut ArmController), reason: AbortReason) {
-    let mut kitchen = SUSHI.clone();
+    let mut kitchen = Kitchen::clone(&SUSHI);
     change(&mut kitchen);
-    let mut engine = session(kitchen);
-    meddle(engine.robot().arm().expect("an arm in the physics"));
+    let mut engine = session(Arc::new(kitchen));
+    meddle(arm(&mut engine));
     let mut seen = input(&mut engine, Event::TrialStarted);
     seen.extend(until(&mut engine, 20.0, is_robots_press));
     let given_up = aborts(&seen);

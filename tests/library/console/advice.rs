@@ -545,7 +545,7 @@ fn a_difference_is_chosen_and_opened_by_keys_and_the_screen_says_what_was_seen()
     check_snapshot("console", "compared_opened_120x40", stage.screen((120, 40)));
     // The one before, without closing; then any key closes.
     stage_of_all.control('t');
-    assert!(matches!(stage_of_all.model.dialog, Some(Dialog::Difference(_))));
+    assert!(matches!(stage_of_all.model.dialog, Some(Dialog::Details(..))));
     stage_of_all.hides((120, 40), &["dev, not wizard: press take nori, then assembly board\npress"]);
     stage_of_all.key(KeyCode::Char('x'));
     assert_eq!(stage_of_all.model.dialog, None);

@@ -105,12 +105,13 @@ fn every_code_has_its_key_in_every_panel_and_no_key_tells_what_is_estimated() {
 #[test]
 fn leaving_asks_nothing_while_all_codes_are_saved_and_the_hint_says_so() {
     let mut stage = rater(RaterCodes::default());
-    stage.shows_everywhere(&["^c quit (saved)"]);
+    // The letters code beliefs here, also those that go to notes, errors and signals in other replays.
+    stage.shows_everywhere(&["esc leave (saved)", "letters belief"]);
     if let Some(coding) = &mut stage.model.coding {
         coding.is_saved = false;
     }
     let screen = stage.screen((80, 24));
-    assert!(screen.contains("^c quit") && !screen.contains("saved"), "{screen}");
+    assert!(screen.contains("esc leave") && !screen.contains("saved"), "{screen}");
     assert_eq!(stage.control('c'), Some(ConsoleCommand::Quit), "what is not saved is saved on leaving");
 }
 

@@ -81,7 +81,7 @@ fn an_action_is_found_by_typing_and_done_as_by_its_key() {
     for (typed, expected) in [
         ("hold", Event::RobotHeld { by: tomcom_core::communication::Sender::Wizard }),
         ("stoprobot", Event::RobotStopped),
-        ("stpause", Event::TrialPaused),
+        ("pause", Event::TrialPaused),
     ] {
         let mut stage = Stage::sushi(ParticipantKind::Simulated);
         stage.key(KeyCode::Char(':'));
@@ -89,6 +89,15 @@ fn an_action_is_found_by_typing_and_done_as_by_its_key() {
         stage.wait(0.1);
         assert_eq!(input(stage.key(KeyCode::Enter)), Some(expected), "{typed}: {}", stage.notice());
         assert_eq!(stage.model.dialog, None);
+    }
+    // What is no word of an action, nor part of one, runs nothing.
+    for mut stage in [Stage::sushi(ParticipantKind::Simulated), replayed()] {
+        stage.control('k');
+        type_in(&mut stage, "abc");
+        stage.shows_everywhere(&["no such command; bksp deletes a letter"]);
+        stage.wait(0.1);
+        assert_eq!(stage.key(KeyCode::Enter), None);
+        assert!(matches!(stage.model.dialog, Some(Dialog::Palette(_))));
     }
     // A key is found by its name, but a single letter begins words.
     for expected in [KeyAction::Manual(ManualAction::HoldRobot), KeyAction::SwitchLayer, KeyAction::Quit] {
@@ -137,15 +146,36 @@ fn space_stops_the_robot_in_the_palette_and_esc_goes_back() {
     assert_eq!(stage.model.dialog, None);
 }
 
-#[test]
-fn a_replay_has_its_actions_in_the_palette_and_the_space_bar_does_nothing() {
+/// A recording of 90 events, after the tenth.
+fn replayed() -> Stage {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.replays(Playback { event: 10, events: 90, ..Playback::new("S001".to_string()) });
+    stage
+}
+
+#[test]
+fn a_replay_has_its_actions_in_the_palette_and_the_space_bar_does_nothing() {
+    let mut stage = replayed();
     stage.control('k');
     assert_eq!(stage.key(KeyCode::Char(' ')), None);
     type_in(&mut stage, "faster");
     stage.wait(0.1);
     assert_eq!(stage.key(KeyCode::Enter), Some(ConsoleCommand::Move(ReplayAction::Faster)));
+}
+
+#[test]
+fn words_that_are_typed_in_a_replay_find_events() {
+    let mut stage = replayed();
+    let event = |seconds, words: &str| (ReplayAction::ToTime(at(seconds)), words.to_string());
+    let told = vec![event(12.0, "   0:12  human take tuna"), event(14.0, "   0:14  note tuna is wrong")];
+    stage.model.playback.as_mut().expect("a replay").told = told.into();
+    stage.control('k');
+    type_in(&mut stage, "tuna");
+    stage.shows_everywhere(&["0:12  human take tuna", "0:14  note tuna is wrong"]);
+    type_in(&mut stage, " wrong");
+    stage.wait(0.1);
+    assert_eq!(stage.key(KeyCode::Enter), Some(ConsoleCommand::Move(ReplayAction::ToTime(at(14.0)))));
+    assert_eq!(stage.model.dialog, None);
 }
 
 #[test]
@@ -193,16 +223,16 @@ fn found<'a>(typed: &str, rows: &[&'a str]) -> Vec<&'a str> {
 }
 
 #[test]
-fn whole_words_and_beginnings_go_before_letters_with_others_between() {
-    for typed in ["", "tuna", "tunaraw", "una", "traw", "tr", "TunaR", "raw", "raw tuna"] {
+fn whole_words_and_beginnings_go_before_letters_within_words() {
+    for typed in ["", "tuna", "tunaraw", "una", "TunaR", "raw", "raw tuna", "una aw"] {
         assert_eq!(found(typed, &["tuna raw"]), ["tuna raw"], "{typed}");
     }
-    for typed in ["rawtuna", "tx", "tunaraws", "raw salmon"] {
+    for typed in ["rawtuna", "tx", "tunaraws", "raw salmon", "tr", "traw", "naraw"] {
         assert!(found(typed, &["tuna raw"]).is_empty(), "{typed}");
     }
     assert_eq!(found("20260314", &["2026-03-15 P04", "2026-03-14 P07"]), ["2026-03-14 P07"], "signs do not count");
     assert_eq!(found("rec", &["next record", "recipe", "tear candle", "rec"]), ["rec", "next record", "recipe"]);
-    assert_eq!(found("trd", &["tear candle", "third"]), ["third", "tear candle"], "letters that are nearer go first");
+    assert_eq!(found("ir", &["tear in ruins", "third"]), ["third"], "within a word");
 }
 
 #[test]

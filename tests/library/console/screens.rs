@@ -288,7 +288,7 @@ fn the_keys_of_a_replay_and_the_served_orders_fit_the_smallest_console() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     let name = "2026-03-14-P01-1".to_string();
     stage.replays(Playback { playing: true, event: 43210, events: 59289, ..Playback::new(name) });
-    stage.shows_everywhere(&["esc leave", "? help", "left/right step", "0 served", "play 1x", " recording "]);
+    stage.shows_everywhere(&["esc leave", "? help", "left/right step", "m note", "0 served", "play 1x", " recording "]);
 }
 
 #[test]
@@ -357,9 +357,11 @@ fn orders_and_errors_are_explained_at_every_size() {
     stage.shows_everywhere(&needs);
     stage.shows_everywhere(&[why]);
     stage.shows_everywhere(&believed);
+    SIZES.iter().for_each(|size| stage.hides(*size, &["0:18.0"]));
     stage.replays(Playback::new("P01-1".to_string()));
     stage.shows_everywhere(&needs);
-    stage.shows_everywhere(&[why]);
+    // Which of the events of one second came first.
+    stage.shows_everywhere(&[why, "0:18.0 human"]);
     stage.session.spec.console.visibility = WizardVisibility::State;
     stage.shows_everywhere(&needs);
     stage.shows_everywhere(&[why]);
@@ -663,4 +665,17 @@ fn a_replay_says_at_which_landmark_it_stands_for_as_long_as_it_stands_there() {
     stage.shows_everywhere(&["error 1 of 17: take salmon"]);
     stage.model.playback.as_mut().expect("a replay").event = 11;
     SIZES.iter().for_each(|size| stage.hides(*size, &["error 1 of 17"]));
+    // What the lines of a small terminal cut, a dialog shows whole, for as long as it is read.
+    let playback = stage.model.playback.as_mut().expect("a replay");
+    let believed =
+        "believed wrong, by the participant: recipe of crab maki (order 2): thinks raw crab, needs cut crab since 0:12";
+    playback.landmark = Some((11, Some(ReplayLandmark::Error), format!("{words}; {believed}; the end")));
+    stage.model.size = (80, 24);
+    stage.shows((80, 24), &["error 1 of 17: take salmon", "^o shows all"]);
+    stage.hides((80, 24), &["the end"]);
+    stage.control('o');
+    stage.model.clock = at(10800.0);
+    stage.shows((80, 24), &["error 1 of 17: take salmon", "since 0:12", "the end", "any key closes"]);
+    stage.key(KeyCode::Esc);
+    assert_eq!(stage.model.dialog, None);
 }

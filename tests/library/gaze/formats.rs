@@ -8,6 +8,7 @@ use tomcom_core::gaze::tags::SurfaceHomography;
 use tomcom_devices::gaze_file::{self, GazeFile};
 use tomcom_devices::pupil::message::{self, CaptureNotification, PupilMessage};
 use tomcom_devices::pupil::zmtp::ZmtpFrameAssembler;
+use tomcom_session::files::file_error::FileResult;
 use tomcom_session::preflight_checks::{PreflightCheck, PreflightVerdict, recorded_gaze};
 use tomcom_session::tracker::{MissingConfidence, TrackerSpec};
 
@@ -149,25 +150,27 @@ fn frames_are_put_together_from_any_pieces_and_claims_are_not_believed() {
     assert!(refused(&[1, 0].repeat(17)), "a message of very many frames");
 }
 
-fn map() -> SurfaceHomography {
-    SurfaceHomography::new([[0.1, 0.1], [0.9, 0.1], [0.9, 0.9], [0.1, 0.9]]).expect("a surface")
+/// Reads a file, whose surface is the middle of the display, from this time on.
+fn read_from(path: &Path, file_start_s: f64) -> FileResult<GazeFile> {
+    let map = SurfaceHomography::new([[0.1, 0.1], [0.9, 0.1], [0.9, 0.9], [0.1, 0.9]]).expect("a surface");
+    gaze_file::read(path, &map, &TrackerSpec { file_start_s, ..TrackerSpec::default() })
 }
 
 #[test]
 fn exports_of_pupil_player_and_own_recordings_are_replayed() {
     let path = Path::new("tests/pupil/gaze_positions_on_surface_wall.csv");
-    let found = gaze_file::read(path, &map(), &from(0.0)).expect("an export");
+    let found = read_from(path, 0.0).expect("an export");
     assert_eq!((found.samples.len(), found.summary.malformed), (3, 2));
     let (at_s, sample) = found.samples[1];
     assert!((at_s - 0.004_124_045).abs() < 1e-8, "{at_s}");
     assert!((sample.x - 0.3).abs() < 1e-9 && (sample.y - 0.1).abs() < 1e-9, "{sample:?}");
     assert_eq!((sample.device_ns, sample.confidence), (Some(5_117_922_610), 0.91));
-    let error = gaze_file::read(Path::new("layouts/sushi.toml"), &map(), &from(0.0)).expect_err("no export");
+    let error = read_from(Path::new("layouts/sushi.toml"), 0.0).expect_err("no export");
     assert!(error.to_string().contains("no column gaze_timestamp"), "{error}");
     let recording = std::fs::read_dir("tests/golden").expect("recordings").map(|entry| entry.expect("an entry").path());
     let recording = recording.filter(|path| path.extension().is_some_and(|extension| extension == "jsonl"));
     // A recording may have no gaze, which is said.
-    let read = |path: PathBuf| gaze_file::read(&path, &map(), &from(0.0)).map_or(0, |found| found.samples.len());
+    let read = |path: PathBuf| read_from(&path, 0.0).map_or(0, |found| found.samples.len());
     let counts: Vec<usize> = recording.map(read).collect();
     assert!(counts.iter().any(|count| *count > 1000), "{counts:?}");
 }
@@ -175,13 +178,13 @@ fn exports_of_pupil_player_and_own_recordings_are_replayed() {
 #[test]
 fn a_trial_starts_anywhere_in_a_gaze_file() {
     let path = Path::new("tests/pupil/gaze_positions_on_surface_wall.csv");
-    let starting = |start_s: f64| gaze_file::read(path, &map(), &from(start_s)).expect("an export").samples;
+    let starting = |start_s: f64| read_from(path, start_s).expect("an export").samples;
     let whole = starting(0.0);
     let (later, earlier) = (starting(0.005), starting(-2.0));
     assert_eq!((later.len(), earlier.len()), (1, 3));
     assert!((later[0].0 - (whole[2].0 - 0.005)).abs() < 1e-12 && later[0].1 == whole[2].1);
     assert!((earlier[0].0 - 2.0).abs() < 1e-12);
-    let error = gaze_file::read(path, &map(), &from(60.0)).expect_err("nothing is left").to_string();
+    let error = read_from(path, 60.0).expect_err("nothing is left").to_string();
     assert!(error.contains("its last sample at 0.0 s, before the start at 60.0 s"), "{error}");
 }
 
@@ -202,12 +205,7 @@ fn the_command_line_names_file_and_start() {
 fn read_table(text: &str) -> Result<gaze_file::GazeFile, String> {
     let path = folder("table").join("table.csv");
     std::fs::write(&path, text).expect("written");
-    gaze_file::read(&path, &map(), &from(0.0)).map_err(|error| error.to_string())
-}
-
-/// Settings of a tracker whose file is read from this time on.
-fn from(file_start_s: f64) -> TrackerSpec {
-    TrackerSpec { file_start_s, ..TrackerSpec::default() }
+    read_from(&path, 0.0).map_err(|error| error.to_string())
 }
 
 /// A folder of this test.
@@ -307,15 +305,14 @@ fn recordings_and_downloads_of_the_trackers_are_told_from_gaze_on_the_display() 
         (mapper.clone(), "a folder with a table of gaze on the display", &table),
         (archive, "an archive", "unpack the archive"),
     ] {
-        let error = gaze_file::read(&path, &map(), &from(0.0)).expect_err("no gaze on the display");
+        let error = read_from(&path, 0.0).expect_err("no gaze on the display");
         let told = error.remedy();
         assert!(error.to_string().contains(found) && told.contains(remedy), "{error}; {told}");
     }
     // The table is taken, and gaze in the picture is not.
-    let error = gaze_file::read(&mapper.join("gaze.csv"), &map(), &from(0.0)).expect_err("no gaze").to_string();
+    let error = read_from(&mapper.join("gaze.csv"), 0.0).expect_err("no gaze").to_string();
     assert!(error.contains("a table without a line below its header"), "{error}");
-    let error =
-        gaze_file::read(&series.join("gaze.csv"), &map(), &from(0.0)).expect_err("not on the display").to_string();
+    let error = read_from(&series.join("gaze.csv"), 0.0).expect_err("not on the display").to_string();
     assert!(error.contains("gaze in the scene camera's picture"), "{error}");
 }
 
@@ -348,6 +345,11 @@ fn refused(name: &str, text: &str) -> String {
 fn player(times: &[String]) -> String {
     let row = |time: &String| format!("{time},1,{time},0.5,0.25,0.5,0.25,True,0.97\n");
     format!("{PLAYER}\n{}", times.iter().map(row).collect::<String>())
+}
+
+/// A table whose lines, counted from 0, are changed so.
+fn rewritten(table: &str, change: impl Fn(usize, &str) -> String) -> String {
+    table.lines().enumerate().map(|(nth, line)| change(nth, line) + "\n").collect()
 }
 
 /// Times from this one on, this far apart.
@@ -439,25 +441,16 @@ fn times_that_a_spreadsheet_rounded_are_refused_with_the_cause() {
 fn tables_are_read_as_spreadsheets_pandas_and_r_write_them() {
     let plain = player(&every(3_811.123_456, 0.005, 20));
     let wanted = read("plain", &plain).expect("a table").samples;
-    let each_row = |change: &dyn Fn(&str) -> String| -> String {
-        plain
-            .lines()
-            .enumerate()
-            .map(|(nth, line)| format!("{}\n", if nth == 0 { line.to_string() } else { change(line) }))
-            .collect()
+    let each_row = |change: &dyn Fn(&str) -> String| {
+        rewritten(&plain, |nth, line| if nth == 0 { line.to_string() } else { change(line) })
     };
     let semicolons = plain.replace(',', ";").replace('.', ",");
     let quoted = |line: &str| line.split(',').map(|cell| format!("\"{cell}\"")).collect::<Vec<_>>().join(",");
     let all_quoted: String = plain.lines().map(|line| quoted(line) + "\r\n").collect();
-    let of_r: String = plain
-        .lines()
-        .enumerate()
-        .map(|(nth, line)| {
-            let name = if nth == 0 { String::new() } else { nth.to_string() };
-            let line = if nth == 0 { quoted(line) } else { line.replace("True", "TRUE") };
-            format!("\"{name}\",{line}\n")
-        })
-        .collect();
+    let of_r = rewritten(&plain, |nth, line| match nth {
+        0 => format!("\"\",{}", quoted(line)),
+        _ => format!("\"{nth}\",{}", line.replace("True", "TRUE")),
+    });
     let decimal_commas = each_row(&|line: &str| quoted(line).replace('.', ","));
     for (name, text) in [
         ("semicolons", semicolons.clone()),
@@ -500,14 +493,7 @@ fn tables_are_read_as_spreadsheets_pandas_and_r_write_them() {
 #[test]
 fn what_cannot_be_read_is_named_with_its_line_and_cause() {
     let plain = player(&every(3_811.123_456, 0.005, 20));
-    let commas: String = plain
-        .lines()
-        .enumerate()
-        .map(|(nth, line)| match nth {
-            0 => format!("{line}\n"),
-            _ => line.replace('.', ",") + "\n",
-        })
-        .collect();
+    let commas = rewritten(&plain, |nth, line| if nth == 0 { line.to_string() } else { line.replace('.', ",") });
     for (name, text, found) in [
         ("commas", commas, "commas.csv:2: found no line with gaze: 16 cells instead of 9: decimal commas?"),
         ("words", player(&["soon".to_string()]), "words.csv:2: found no line with gaze: gaze_timestamp = \"soon\""),
@@ -557,7 +543,7 @@ fn a_sample_without_confidence_is_one_of_the_kind_that_the_settings_say() {
             assert_eq!(recorded_gaze("", summary)[0].verdict, PreflightVerdict::Ok);
         }
     }
-    let none: String = plain.lines().map(|line| format!("{}\n", line.rsplit_once(',').expect("columns").0)).collect();
+    let none = rewritten(&plain, |_, line| line.rsplit_once(',').expect("columns").0.to_string());
     let error = refused("no-confidence", &none);
     assert!(error.contains("no-confidence.csv:1: found no column confidence"), "{error}");
     let found = read_bytes("no-confidence", none.as_bytes(), MissingConfidence::Good).expect("a table").summary;

@@ -10,21 +10,27 @@ use tomcom_study::rater_episodes::{BeliefEvidence, BeliefEvidenceEvent};
 use super::engine;
 use crate::support::*;
 
+/// Somebody at the keyboard, whose gaze another program tells.
+fn tells_gaze(spec: &mut SessionSpec) {
+    (spec.participant.kind, spec.participant.gaze) = (ParticipantKind::Keyboard, GazeSource::Json);
+}
+
+fn at_ms(ms: u64) -> SessionTime {
+    SessionTime(ms * 1_000_000)
+}
+
 #[test]
 fn what_is_wrong_with_a_stream_is_counted_by_kind_and_not_read() {
-    let mut engine = engine(|spec| {
-        (spec.participant.kind, spec.participant.gaze) = (ParticipantKind::Keyboard, GazeSource::Json);
-    });
-    let at = |ms: u64| SessionTime(ms * 1_000_000);
-    assert_eq!(engine.input(at(0), Event::TrialStarted).refused, None);
+    let mut engine = engine(tells_gaze);
+    assert_eq!(engine.input(at_ms(0), Event::TrialStarted).refused, None);
     let send = |engine: &mut SessionEngine, arrived: u64, taken: u64, x: f64| {
         let sample = GazeSample {
             device_ns: Some(taken as i64 + 5),
-            taken_ns: Some(at(taken)),
+            taken_ns: Some(at_ms(taken)),
             ..GazeSample::new(x, 0.35, 0.9)
         };
         let before = engine.belief().clone();
-        assert_eq!(engine.input(at(arrived), Event::Gaze(sample)).refused, None);
+        assert_eq!(engine.input(at_ms(arrived), Event::Gaze(sample)).refused, None);
         (*engine.belief() != before, engine.session().gaze.fault)
     };
     assert_eq!(send(&mut engine, 1000, 990, 0.40), (true, None));
@@ -42,11 +48,10 @@ fn what_is_wrong_with_a_stream_is_counted_by_kind_and_not_read() {
 
 #[test]
 fn what_is_read_is_what_the_display_showed_when_the_sample_was_taken() {
-    let at = |ms: u64| SessionTime(ms * 1_000_000);
     // Salmon is put down on the counter at 1000 ms; gaze of before and after arrives at 1100 ms.
     let p_salmon = |taken_ms: u64| {
         let mut engine = engine(|spec| {
-            (spec.participant.kind, spec.participant.gaze) = (ParticipantKind::Keyboard, GazeSource::Json);
+            tells_gaze(spec);
             // Before the samples the gaze is unknown, and nothing is looked at.
             (spec.human.looking.looks_hz, spec.human.looking.other_looks_hz) = (0.0, 0.0);
             spec.human.looking.capture = 0.0;
@@ -55,13 +60,13 @@ fn what_is_read_is_what_the_display_showed_when_the_sample_was_taken() {
         let counter = kitchen.location_named("counter").expect("a counter");
         let [x, y] = kitchen.location(counter).display.centre();
         let input = |engine: &mut SessionEngine, ms: u64, event: Event| {
-            assert_eq!(engine.input(at(ms), event).refused, None);
+            assert_eq!(engine.input(at_ms(ms), event).refused, None);
         };
         input(&mut engine, 0, Event::TrialStarted);
         let (location, content) = ("counter".to_string(), "salmon raw".to_string());
         input(&mut engine, 1000, Event::KitchenCorrected { location, content });
         for sample in 0..8 {
-            let taken_ns = Some(at(taken_ms + 5 * sample));
+            let taken_ns = Some(at_ms(taken_ms + 5 * sample));
             input(&mut engine, 1100, Event::Gaze(GazeSample { taken_ns, ..GazeSample::new(x, y, 0.9) }));
         }
         let salmon = kitchen.content_named("salmon raw").expect("salmon").0;
@@ -98,16 +103,13 @@ fn what_waited_while_the_program_stood_still_is_no_flood() {
 
 /// The sampling rates that are shown after samples that arrive and were taken at these times, in ms.
 fn rates(samples: impl IntoIterator<Item = (u64, Option<u64>)>) -> Vec<f64> {
-    let mut engine = engine(|spec| {
-        (spec.participant.kind, spec.participant.gaze) = (ParticipantKind::Keyboard, GazeSource::Json);
-    });
-    let at = |ms: u64| SessionTime(ms * 1_000_000);
+    let mut engine = engine(tells_gaze);
     let mut shown = Vec::new();
     for (index, (arrived, taken)) in samples.into_iter().enumerate() {
         let x = 0.4 + index as f64 * 1e-5;
-        let sample = GazeSample { taken_ns: taken.map(at), ..GazeSample::new(x, 0.35, 0.9) };
-        assert_eq!(engine.input(at(arrived), Event::Gaze(sample)).refused, None);
-        shown.extend(engine.session().gaze_hz(at(arrived)));
+        let sample = GazeSample { taken_ns: taken.map(at_ms), ..GazeSample::new(x, 0.35, 0.9) };
+        assert_eq!(engine.input(at_ms(arrived), Event::Gaze(sample)).refused, None);
+        shown.extend(engine.session().gaze_hz(at_ms(arrived)));
     }
     shown
 }
@@ -137,9 +139,7 @@ fn the_rate_of_samples_that_arrive_together_is_the_trackers() {
 
 /// The estimate after a path of fixations, told at this rate; each a point and its length in seconds.
 fn after_path(path: &[([f64; 2], f64)], hz: f64) -> Vec<Vec<f64>> {
-    let mut engine = engine(|spec| {
-        (spec.participant.kind, spec.participant.gaze) = (ParticipantKind::Keyboard, GazeSource::Json);
-    });
+    let mut engine = engine(tells_gaze);
     assert_eq!(engine.input(at(0.0), Event::TrialStarted).refused, None);
     let mut input = |time_s: f64, event: Event| assert_eq!(engine.input(at(time_s), event).refused, None);
     // What the robot's presses do to a belief is drawn, by the numbers of events, which are others at another rate.

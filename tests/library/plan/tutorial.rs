@@ -321,7 +321,8 @@ fn a_wrong_tutorial_names_file_line_and_what_would_be_right() {
     let found = |text: &str| {
         fs::write(at.join("tutorial.toml"), text).expect("a file");
         let error = read_session(&at.join("study.toml")).expect_err("an error");
-        format!("{:?}", miette::Report::new(error))
+        let told = error.to_string();
+        format!("{told}\n{:?}", miette::Report::new(error))
     };
     for (from, to, wanted) in [
         ("kind = \"press\"", "kind = \"push\"", "push"),
@@ -329,7 +330,11 @@ fn a_wrong_tutorial_names_file_line_and_what_would_be_right() {
         ("presses = [\"cook\", \"cooking_pot\"]", "presses = [\"cut\"]", "does nothing"),
         ("dish = \"salmon maki\"", "dish = \"pizza\"", "pizza"),
         // Perhaps it is a tutorial of another kitchen than the session's.
-        ("dish = \"salmon maki\"", "dish = \"pizza\"", "\"sushi\""),
+        (
+            "dish = \"salmon maki\"",
+            "dish = \"pizza\"",
+            "found a tutorial that does not fit the kitchen \"sushi\" of the session: step ",
+        ),
         ("point_at = [\"order_1\", ", "point_at = [\"order_9\", ", "order_9"),
         ("right = 3", "right = 4", "right = 4"),
         ("about = \"cutting_board\"", "about = \"oven\"", "oven"),

@@ -68,6 +68,19 @@ fn a_scene_shows_every_press_signal_and_sample_once_at_its_time() {
         assert_eq!(steps_of("robot/presses"), presses[Agent::Robot.index()], "{name}");
         assert_eq!(steps_of("human/gaze"), gaze, "{name}");
         assert_eq!(steps_of("assistant/benefit/cost_line"), cost, "{name}");
+        // Where a signal is marked as sent, its curve has that value.
+        for moment in &moments {
+            let value = |row: &EntityUpdate| match &row.shown {
+                EntityData::Value(value) => Some((row.entity.clone(), *value)),
+                _ => None,
+            };
+            let (sent, others): (Vec<_>, Vec<_>) =
+                moment.rows.iter().filter_map(value).partition(|(entity, _)| entity == "assistant/benefit/sent");
+            let has_curve = |net: f64| {
+                others.iter().any(|(entity, value)| entity.starts_with("assistant/benefit/") && *value == net)
+            };
+            assert!(sent.iter().all(|(_, net)| has_curve(*net)), "{name}: a signal at {}", moment.trial);
+        }
         let sent = moments.iter().flat_map(|moment| &moment.rows).filter(|row| {
             row.entity == "wizard/signals"
                 && matches!(&row.shown, EntityData::Words { text, .. } if !text.starts_with("wizard: took"))

@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 
+use tomcom::console::console_model::ReplayAction;
 use tomcom::run::seekable_replay::SeekableReplay;
 use tomcom_session::TimelineEvent;
 use tomcom_session::files::file_error::FileResult;
@@ -165,6 +166,7 @@ fn a_blinded_replay_shows_no_signal_and_the_same_kitchen() {
     assert!(is_signal(&open) > 0, "there are signals to be hidden");
     assert_eq!(open.errors, blind.errors);
     assert_eq!(blind.landmark(ReplayLandmark::Signal, false, false), None);
+    assert!(blind.told_events().is_empty() && !open.told_events().is_empty());
     let signal = open.landmark(ReplayLandmark::Signal, false, false).expect("a signal");
     open.wind(signal);
     let named = open.named(ReplayLandmark::Signal).expect("a signal");
@@ -181,6 +183,12 @@ fn a_blinded_replay_shows_no_signal_and_the_same_kitchen() {
         .count()
     };
     assert!(steps(&mut blind) < steps(&mut open));
+    // Advice of nothing is told, too.
+    open.wind(0);
+    while open.position < events {
+        open.wind(open.next_step());
+        assert_ne!(open.named_event().as_deref(), Some("advised"), "at {}", open.position);
+    }
 }
 
 #[test]
@@ -191,7 +199,7 @@ fn a_replay_goes_from_one_error_signal_or_false_belief_to_the_next_and_back() {
     let mut errors: Vec<SessionTime> = film.errors.iter().map(|error| error.time).collect();
     errors.dedup();
     assert!(errors.len() > 2, "{errors:?}");
-    let mut visited = Vec::new();
+    let (mut visited, mut believed) = (Vec::new(), 0);
     while let Some(position) = film.landmark(ReplayLandmark::Error, true, false) {
         film.wind(position);
         visited.push(film.time());
@@ -199,8 +207,13 @@ fn a_replay_goes_from_one_error_signal_or_false_belief_to_the_next_and_back() {
         assert!(named.starts_with(&format!("error {} of {}: ", visited.len(), errors.len())), "{named}");
         assert!(named.split(": ").count() > 2, "press and reason: {named}");
         assert!(named.contains("costs "), "the cost, and the cause where it is known: {named}");
+        believed += usize::from(named.contains("; believed wrong, by the participant: "));
     }
+    assert!(believed > 0, "what the participant itself believed");
     assert_eq!(visited, errors);
+    // The palette finds events by their words: an error leads to its explanation.
+    let told = film.told_events();
+    assert!(told.iter().any(|(to, _)| *to == ReplayAction::ToNth(ReplayLandmark::Error, 1)), "{told:?}");
     let back = film.landmark(ReplayLandmark::Error, false, false).expect("the error before");
     film.wind(back);
     assert_eq!(film.time(), errors[errors.len() - 2]);

@@ -8,7 +8,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::{check, complaint, figures};
-use crate::program::folder;
+use crate::program::{folder, session_file};
 
 #[test]
 fn doctor_looks_at_the_machine_and_says_how_to_mend_it() {
@@ -36,14 +36,11 @@ fn doctor_looks_at_the_machine_and_says_how_to_mend_it() {
 
 #[test]
 fn doctor_looks_at_what_a_session_names() {
-    let layout = Path::new(env!("CARGO_MANIFEST_DIR")).join("layouts/sushi.toml");
-    let session = folder("doctor-session").join("session.toml");
+    let place = folder("doctor-session");
     let taken = TcpListener::bind(("127.0.0.1", 0)).expect("a port");
     let port = taken.local_addr().expect("an address").port();
-    let session_path = session.to_str().expect("a path in UTF-8");
     let verdict = |settings: &str, name: &str| {
-        fs::write(&session, format!("layout = \"{}\"\n{settings}", layout.display())).expect("a session file");
-        let found = figures(&["doctor", session_path, "--format", "json"], 1);
+        let found = figures(&["doctor", &session_file(&place, settings), "--format", "json"], 1);
         let check = found["checks"].as_array().and_then(|checks| checks.iter().find(|check| check["name"] == name));
         let told = |key: &str| check.and_then(|check| check[key].as_str()).unwrap_or_default().to_string();
         (told("verdict"), told("found"))
@@ -66,7 +63,7 @@ fn doctor_looks_at_what_a_session_names() {
         let (found, words) = verdict(&settings, "gaze");
         assert_eq!(found, expected, "{words}");
     }
-    let table = session.with_file_name("gaze.csv");
+    let table = place.join("gaze.csv");
     let settings = format!("[participant]\ngaze = \"file\"\n[tracker]\nfile = \"{}\"\n", table.display());
     let row = |time: f64| format!("{time:.3},0.5,0.5,0.9\n");
     let rows: String = (0..80).map(|nth| row(f64::from(nth % 40) / 200.0 - 3.0)).collect();

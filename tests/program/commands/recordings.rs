@@ -1,12 +1,11 @@
 //! Recordings that are closed: excluded, and compared with assistants.
 
 use std::fs;
-use std::path::Path;
 
 use serde_json::Value;
 
 use super::{check, complaint, figures};
-use crate::program::{done, folder};
+use crate::program::{done, folder, session_file};
 
 #[test]
 fn a_closed_recording_is_excluded_and_taken_back_and_the_figures_say_so() {
@@ -45,14 +44,11 @@ fn a_closed_recording_is_excluded_and_taken_back_and_the_figures_say_so() {
 #[test]
 fn compare_sets_assistants_beside_what_was_sent_and_opens_what_differs() {
     let out = folder("compare");
-    let session = out.join("short.toml");
-    let layout = Path::new(env!("CARGO_MANIFEST_DIR")).join("layouts/sushi.toml");
-    let text = format!(
-        "layout = \"{}\"\n[trial]\nseconds = 60.0\n[assistant]\nconcept = \"tom\"\n[human.inference]\nbeliefs = 32\nstates = 8\n",
-        layout.display()
+    let session = &session_file(
+        &out,
+        "[trial]\nseconds = 60.0\n[assistant]\nconcept = \"tom\"\n[human.inference]\nbeliefs = 32\nstates = 8\n",
     );
-    fs::write(&session, text).expect("a session file");
-    let [session, out] = [&session, &out].map(|path| path.to_str().expect("a path in UTF-8"));
+    let out = out.to_str().expect("a path in UTF-8");
     let arguments =
         ["simulate", session, "--trials", "2", "--condition", "assistant", "--out", out, "--format", "json"];
     let recordings = figures(&arguments, 0);
@@ -119,14 +115,8 @@ fn compare_sets_assistants_beside_what_was_sent_and_opens_what_differs() {
 #[test]
 fn a_folder_is_listed_and_is_no_recording_where_one_is_meant() {
     let out = folder("list");
-    let session = out.join("short.toml");
-    let layout = Path::new(env!("CARGO_MANIFEST_DIR")).join("layouts/sushi.toml");
-    let text = format!(
-        "layout = \"{}\"\n[trial]\nseconds = 20.0\n[human.inference]\nbeliefs = 32\nstates = 8\n",
-        layout.display()
-    );
-    fs::write(&session, text).expect("a session file");
-    let [session, out] = [&session, &out].map(|path| path.to_str().expect("a path in UTF-8"));
+    let session = &session_file(&out, "[trial]\nseconds = 20.0\n[human.inference]\nbeliefs = 32\nstates = 8\n");
+    let out = out.to_str().expect("a path in UTF-8");
     check(&["simulate", session, "--trials", "4", "--seed", "7", "--arm", "timed", "--out", out], 0);
     // The second is cut, the third excluded, the fourth no log.
     let log = format!("{out}/seed7-S002/events.jsonl");
@@ -252,6 +242,15 @@ fn errors_of_a_recording_are_listed_as_commands_that_open_the_viewer_there() {
     for believed in told.lines().filter_map(|line| line.split_once("; believed wrong, by the estimate: ")) {
         assert!(believed.1.matches("(order 1)").count() <= 1 && !believed.1.contains(" more"), "{believed:?}");
     }
+    // The same for programs.
+    let listed = figures(&["review", recording, "--errors", "--beliefs", "--format", "json"], 0);
+    let listed = listed["landmarks"].as_array().expect("landmarks");
+    assert!(listed.iter().any(|one| one["kind"] == "error" && one["from_s"].is_f64()), "{listed:?}");
+    let told = list(&["--errors", "--beliefs"]);
+    let words: Vec<&str> = listed.iter().filter_map(|one| one["words"].as_str()).collect();
+    assert!(told.lines().zip(&words).all(|(line, words)| line.ends_with(words)), "{told}");
+    assert_eq!(words.len(), told.lines().count());
+    assert!(complaint(&["review", recording, "--format", "json"]).contains("--errors"));
     // Each option lists its own only.
     let listed = list(&["--errors"]);
     assert!(listed.lines().all(|line| line.contains(", error ")), "{listed}");

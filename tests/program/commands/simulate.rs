@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::{check, complaint, figures};
-use crate::program::folder;
+use crate::program::{folder, session_file};
 
 #[test]
 fn kitchen_prints_the_state_space_and_the_plans() {
@@ -122,13 +122,11 @@ least_rollouts = 2
 #[test]
 fn simulate_tells_which_conditions_of_a_plan_have_no_signals() {
     let folder = folder("absent");
-    let path = |name: &str| folder.join(name).to_str().expect("a path in UTF-8").to_string();
-    let [session, out] = ["session.toml", "out"].map(path);
-    let layout = fs::canonicalize("layouts/sushi.toml").expect("the layout is there");
+    let out = folder.join("out").display().to_string();
     let plan = "[console]\nvisibility = \"state\"\n[plan]\nname = \"absent\"\nparticipants = 1\n\
                 conditions = [\"none\", \"wizard\", \"wizard+advice\"]\n";
     let told = |wizard: &str, seed: &str| {
-        fs::write(&session, format!("layout = {layout:?}\n{QUICK}{plan}{wizard}")).expect("the session can be written");
+        let session = session_file(&folder, &format!("{QUICK}{plan}{wizard}"));
         let output = check(&["simulate", &session, "--out", &out, "--seed", seed], 0);
         [output.stderr, output.stdout].map(|text| String::from_utf8_lossy(&text).into_owned())
     };
@@ -143,12 +141,10 @@ fn simulate_tells_which_conditions_of_a_plan_have_no_signals() {
 #[test]
 fn simulate_tells_what_holds_at_the_console_alone() {
     let folder = folder("unused");
-    let path = |name: &str| folder.join(name).to_str().expect("a path in UTF-8").to_string();
-    let [session, out] = ["session.toml", "out"].map(path);
-    let layout = fs::canonicalize("layouts/sushi.toml").expect("the layout is there");
+    let out = folder.join("out").display().to_string();
     let acting =
         QUICK.replace("\"none\"", "\"assistant\"").replace("[assistant.", "[assistant]\nshadow = \"on\"\n[assistant.");
-    fs::write(&session, format!("layout = {layout:?}\n{acting}")).expect("the session can be written");
+    let session = session_file(&folder, &acting);
     let told = |arguments: &[&str]| {
         let output = check(&[&["simulate", &session, "--out", &out], arguments].concat(), 0);
         let told = String::from_utf8_lossy(&output.stderr);
@@ -165,10 +161,8 @@ fn simulate_tells_what_holds_at_the_console_alone() {
 fn fit_writes_a_parameter_file_and_accuracy_tells_its_figures() {
     let folder = folder("fit");
     let path = |name: &str| folder.join(name).to_str().expect("a path in UTF-8").to_string();
-    let [session, start, out, fitted] = ["session.toml", "start.toml", "out", "fitted.toml"].map(path);
-    let layout = fs::canonicalize("layouts/sushi.toml").expect("the layout is there");
-    let layout = layout.to_str().expect("a path in UTF-8");
-    fs::write(&session, format!("layout = {layout:?}\n{QUICK}")).expect("the session can be written");
+    let [start, out, fitted] = ["start.toml", "out", "fitted.toml"].map(path);
+    let session = session_file(&folder, QUICK);
     let few = "[inference]\nbeliefs = 8\nstates = 4\nmax_beliefs = 8\npredictions = 4\n";
     fs::write(&start, few).expect("the parameters can be written");
     let simulated = figures(&["simulate", &session, "--out", &out, "--format", "json"], 0);
@@ -180,8 +174,7 @@ fn fit_writes_a_parameter_file_and_accuracy_tells_its_figures() {
         found["parameters"].as_array().expect("parameters").iter().filter_map(|one| one["name"].as_str()).collect();
     assert_eq!(names, ["tau", "lapse"]);
     // What was fitted is in force where a session names the file.
-    fs::write(&session, format!("layout = {layout:?}\nhuman_model = {fitted:?}\n{QUICK}"))
-        .expect("the session can be written");
+    let session = session_file(&folder, &format!("human_model = {fitted:?}\n{QUICK}"));
     let again = figures(&["simulate", &session, "--out", &out, "--seed", "5", "--format", "json"], 0);
     let log = Path::new(again["recordings"][0].as_str().expect("a recording")).join("events.jsonl");
     let log = fs::read_to_string(log).expect("a log");

@@ -7,15 +7,12 @@ use std::process::Command;
 use serde::Deserialize;
 
 use super::{check, complaint};
-use crate::program::{TOMCOM, folder};
+use crate::program::{TOMCOM, folder, session_file};
 
 #[test]
 fn wrong_files_and_arguments_are_named_with_what_would_be_right() {
-    let session = folder("wrong").join("keyboard.toml");
-    let sushi = fs::canonicalize("layouts/sushi.toml").expect("the layout");
-    let keyboard = "[participant]\nkind = \"keyboard\"\ngaze = \"none\"\n";
-    fs::write(&session, format!("layout = \"{}\"\n{keyboard}", sushi.display())).expect("a file");
-    assert!(complaint(&["simulate", &session.display().to_string()]).contains("simulated"));
+    let session = session_file(&folder("wrong"), "[participant]\nkind = \"keyboard\"\ngaze = \"none\"\n");
+    assert!(complaint(&["simulate", &session]).contains("simulated"));
     assert!(complaint(&["replay", "nowhere", "--verify"]).contains("nowhere"));
     assert!(complaint(&["replay", "Cargo.toml", "--verify"]).contains("Cargo.toml:1:"));
     assert!(complaint(&["replay", "Cargo.toml"]).contains("no log of a session"));
@@ -197,12 +194,8 @@ fn a_kitchen_takes_no_key_from_the_console() {
 /// A session of the sushi kitchen with this key file, in a folder of its own; the path of the session file.
 fn session_with_keys(name: &str, keys: &str) -> String {
     let folder = folder(name);
-    let sushi = fs::canonicalize("layouts/sushi.toml").expect("the layout");
     fs::write(folder.join("keys.toml"), keys).expect("a file");
-    let session = folder.join("session.toml");
-    fs::write(&session, format!("layout = \"{}\"\n[console]\nkeys = \"keys.toml\"\n", sushi.display()))
-        .expect("a file");
-    session.to_str().expect("a path in UTF-8").to_string()
+    session_file(&folder, "[console]\nkeys = \"keys.toml\"\n")
 }
 
 #[test]

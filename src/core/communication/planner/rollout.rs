@@ -6,7 +6,7 @@
 
 use rand::RngExt;
 
-use crate::base::rng::Stream;
+use crate::base::rng::{Stream, mix};
 use crate::communication::concept::{RobotIntent, Situation};
 use crate::communication::settings::RolloutSettings;
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity, MAX_BUTTONS};
@@ -480,7 +480,8 @@ impl RobotPolicy {
         recipes: &Recipes,
     ) -> RobotChoices {
         let wanted = wanted_recipes(kitchen, state, recipes);
-        let place = (crate::base::rng::mix(hash(state, &wanted) ^ fidelity as u64) >> (64 - BITS)) as usize;
+        let hash = mix(World { state, recipes: wanted }.folded());
+        let place = (mix(hash ^ fidelity as u64) >> (64 - BITS)) as usize;
         if let Some((of_fidelity, known, of, choices)) = self.known[place]
             && of_fidelity == fidelity
             && known == state
@@ -507,12 +508,6 @@ fn wanted_recipes(kitchen: &Kitchen, state: State, recipes: &Recipes) -> Recipes
         }
     }
     wanted
-}
-
-fn hash(state: State, recipes: &Recipes) -> u64 {
-    let (state, recipes) = (state.bits(), recipes.bits());
-    let mix = crate::base::rng::mix;
-    mix(mix(state as u64 ^ mix((state >> 64) as u64)) ^ mix(recipes as u64 ^ mix((recipes >> 64) as u64)))
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]

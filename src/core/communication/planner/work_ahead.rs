@@ -23,14 +23,7 @@ const PRESSES: usize = 4;
 /// Least share of the belief samples in which the human must choose a press for the planner to prepare for that press.
 const LEAST_SHARE: f64 = 0.05;
 
-/// A change of the trial that may come next.
-#[derive(Clone, Copy)]
-enum NextChange {
-    RobotPress,
-    HumanPress(ButtonId),
-    NewOrder(LocationId, DishId),
-}
-
+/// A situation that may come next.
 struct NextSituation {
     state: State,
     belief: DirichletBelief,
@@ -48,10 +41,10 @@ impl Planner {
         moment: &DecisionPoint,
         proceed: &(dyn Fn() -> bool + Sync),
     ) {
-        let presses = self.likely_presses(cost, moment, proceed).into_iter().map(NextChange::HumanPress);
-        let changes = std::iter::once(NextChange::RobotPress).chain(presses).chain(self.new_orders(moment));
-        for change in changes.collect::<Vec<NextChange>>() {
-            let Some(next) = self.after(moment, change) else { continue };
+        let presses = self.likely_presses(cost, moment, proceed).into_iter();
+        let after_presses = presses.filter_map(|button| self.after_the_human(moment, button));
+        let nexts = self.after_the_robot(moment).into_iter().chain(after_presses).chain(self.with_new_orders(moment));
+        for next in nexts.collect::<Vec<NextSituation>>() {
             if !proceed() {
                 return;
             }
@@ -91,19 +84,6 @@ impl Planner {
         buttons.into_iter().take(PRESSES).map(|button| ButtonId(button as u8)).collect()
     }
 
-    /// The situation after a change; `None` if the change cannot come.
-    fn after(&self, moment: &DecisionPoint, change: NextChange) -> Option<NextSituation> {
-        match change {
-            NextChange::RobotPress => self.after_the_robot(moment),
-            NextChange::HumanPress(button) => self.after_the_human(moment, button),
-            NextChange::NewOrder(order, dish) => {
-                let mut state = moment.situation.state;
-                state.set_order(order, OrderContent::Dish(dish));
-                Some(NextSituation { changed: vec![AspectId::of_location(order)], ..unchanged(state, moment) })
-            }
-        }
-    }
-
     /// The situation after the robot's ongoing press, which the human has not seen yet.
     fn after_the_robot(&self, moment: &DecisionPoint) -> Option<NextSituation> {
         let situation = &moment.situation;
@@ -127,13 +107,17 @@ impl Planner {
         Some(next)
     }
 
-    fn new_orders(&self, moment: &DecisionPoint) -> impl Iterator<Item = NextChange> {
-        let state = moment.situation.state;
-        let is_empty = move |order: &&LocationId| !matches!(state.order(**order), OrderContent::Dish(_));
+    fn with_new_orders(&self, moment: &DecisionPoint) -> impl Iterator<Item = NextSituation> {
+        let before = moment.situation.state;
+        let is_empty = move |order: &&LocationId| !matches!(before.order(**order), OrderContent::Dish(_));
         let dishes = self.kitchen.dishes.len() as u8;
-        let of_order =
-            move |&order: &LocationId| (0..dishes).map(move |dish| NextChange::NewOrder(order, DishId(dish)));
-        self.kitchen.orders.iter().filter(is_empty).flat_map(of_order)
+        let with = move |order: LocationId, dish: u8| {
+            let mut state = before;
+            state.set_order(order, OrderContent::Dish(DishId(dish)));
+            NextSituation { changed: vec![AspectId::of_location(order)], ..unchanged(state, moment) }
+        };
+        let empty = self.kitchen.orders.iter().filter(is_empty);
+        empty.flat_map(move |&order| (0..dishes).map(move |dish| with(order, dish)))
     }
 }
 

@@ -35,14 +35,7 @@ impl KitchenTables {
         let contents = kitchen.contents.len();
         let first = kitchen.orders.len();
         let last = kitchen.locations.len();
-        let id = |index: usize| LocationId(index as u8);
-        let content = |index: usize| ContentId(index as u8);
-        let mut accepts = vec![false; last * contents];
-        for location in first..last {
-            for item in 1..contents {
-                accepts[location * contents + item] = kitchen.accepts(id(location), content(item));
-            }
-        }
+        let accepts = kitchen.tables.accepts.clone();
         let hands = kitchen.hands.map(|hand| hand.index());
         let (board, plate) = (kitchen.board.index(), kitchen.plate.index());
         let takes_all = |&location: &usize| (1..contents).all(|item| accepts[location * contents + item]);

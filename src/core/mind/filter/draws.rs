@@ -8,7 +8,7 @@
 use rand::RngExt;
 use rand_distr::{Distribution, Gamma};
 
-use crate::base::rng::{Stream, mix, shuffle};
+use crate::base::rng::{Stream, shuffle};
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity, MAX_BUTTONS};
 use crate::kitchen::{Agent, World};
 use crate::mind::dirichlet::Dirichlet;
@@ -298,10 +298,7 @@ impl DistinctWorlds {
     #[inline]
     pub fn count(&mut self, world: World, times: u32) -> u32 {
         let mask = self.slots.len() - 1;
-        let (bits, of_recipes) = (world.state.bits(), world.recipes.bits());
-        let folded =
-            mix(bits as u64 ^ mix((bits >> 64) as u64)) ^ mix(of_recipes as u64 ^ mix((of_recipes >> 64) as u64));
-        let mut slot = folded as usize & mask;
+        let mut slot = world.folded() as usize & mask;
         loop {
             match self.slots[slot] {
                 0 => {

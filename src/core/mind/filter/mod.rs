@@ -311,11 +311,10 @@ impl BeliefFilter {
         if !self.model.looking.marginalised || seen <= 0.0 || !self.presence.display_in_view {
             return;
         }
-        for index in 0..self.kitchen.locations.len() {
-            let location = LocationId(index as u8);
+        for location in self.kitchen.changed(self.shown, after) {
             let reading = self.reader.reading(&self.kitchen, location, after);
-            if self.shown.code(location) != after.code(location) && !reading.is_empty() {
-                self.belief.aspects[index].learn(seen, reading.iter().copied());
+            if !reading.is_empty() {
+                self.belief.aspects[location.index()].learn(seen, reading.iter().copied());
             }
         }
     }

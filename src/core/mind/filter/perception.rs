@@ -65,7 +65,7 @@ impl GazeBeliefUpdate {
         let confusions: Vec<_> = (0..kitchen.locations.len()).map(of_location).collect();
         let looks = vec![Look { unread: 1.0, survived: 1.0, code: 0, last: SessionTime::ZERO }; confusions.len()];
         let samples = match model.observation {
-            PerceptionUnit::Sample => Some(Arc::new(SampleObservations::new(kitchen, model))),
+            PerceptionUnit::Sample => Some(Arc::new(SampleObservations::new(&confusions))),
             PerceptionUnit::Look => None,
         };
         GazeBeliefUpdate { samples, confusions, rate: model.reading_rate(), looks, shown: VecDeque::new() }
@@ -119,7 +119,7 @@ impl GazeBeliefUpdate {
         let is_usable = sample.is_on_display() && known_s > 0.0;
         let Some(state) = self.shown_at(taken).filter(|_| is_usable) else { return };
         if let Some(samples) = &self.samples {
-            return observe(kitchen, model, samples, belief, sample, state);
+            return self.observe(kitchen, model, samples, belief, sample, state);
         }
         let (full_hz, confidence) = (model.reading_rate_hz, sample.confidence.min(1.0));
         for (index, look) in self.looks.iter_mut().enumerate() {
@@ -141,25 +141,26 @@ impl GazeBeliefUpdate {
             belief.aspects[index].learn(read, self.confusions[index][value].iter().copied());
         }
     }
-}
 
-/// Updates the estimate by the observations of one gaze sample: of every location within the radius around the gaze.
-fn observe(
-    kitchen: &Kitchen,
-    model: &PerceptionModel,
-    samples: &SampleObservations,
-    belief: &mut DirichletBelief,
-    sample: &GazeSample,
-    state: State,
-) {
-    if sample.confidence < model.min_confidence {
-        return;
-    }
-    for (index, location) in kitchen.locations.iter().enumerate() {
-        let code = state.code(LocationId(index as u8));
-        let is_near = location.display.distance_m([sample.x, sample.y], kitchen.display_m) <= model.radius_m();
-        if let Some(truth) = kitchen.aspects[index].index_of(code).filter(|_| is_near) {
-            samples.observe(&mut belief.aspects[index], index, truth);
+    /// Updates the estimate by the observations of one gaze sample: of every location within the radius around the gaze.
+    fn observe(
+        &self,
+        kitchen: &Kitchen,
+        model: &PerceptionModel,
+        samples: &SampleObservations,
+        belief: &mut DirichletBelief,
+        sample: &GazeSample,
+        state: State,
+    ) {
+        if sample.confidence < model.min_confidence {
+            return;
+        }
+        for (index, location) in kitchen.locations.iter().enumerate() {
+            let code = state.code(LocationId(index as u8));
+            let is_near = location.display.distance_m([sample.x, sample.y], kitchen.display_m) <= model.radius_m();
+            if let Some(truth) = kitchen.aspects[index].index_of(code).filter(|_| is_near) {
+                samples.observe(&mut belief.aspects[index], index, truth, &self.confusions[index][truth]);
+            }
         }
     }
 }
@@ -191,20 +192,13 @@ const SIDE: f64 = 20.0;
 /// Least weight c(o | v), so that an observation which the human holds to be impossible leaves a proper belief.
 const LEAST_WEIGHT: f64 = 1e-9;
 
-#[derive(Clone, Debug)]
-struct LocationObservations {
-    /// `[s][o]`: probability c(o | s) of observing value o where value s is displayed.
-    confusion: Vec<Vec<f64>>,
-    /// `[o][v]`: index of c(o | v) among the weights.
-    weight_of: Vec<Vec<usize>>,
-}
-
 /// The update of beliefs by observations of single gaze samples.
 #[derive(Clone, Debug)]
 pub struct SampleObservations {
     /// For each weight c(o | v), at the points of the trapezoidal rule: ln(1 + t w), and t w / (1 + t w).
     weights: Vec<Vec<[f64; 2]>>,
-    locations: Vec<LocationObservations>,
+    /// `[location][o][v]`: index of c(o | v) among the weights.
+    weight_of: Vec<Vec<Vec<usize>>>,
 }
 
 /// Values of one class: those with the same weight c(o | v).
@@ -218,7 +212,8 @@ struct ValueClass {
 }
 
 impl SampleObservations {
-    pub fn new(kitchen: &Kitchen, model: &PerceptionModel) -> SampleObservations {
+    /// `confusions` has c(o | s) by location, displayed value s, and observed value o.
+    fn new(confusions: &[Vec<Vec<f64>>]) -> SampleObservations {
         let mut all: Vec<f64> = Vec::new();
         let mut index_of = |weight: f64| {
             let weight = weight.max(LEAST_WEIGHT);
@@ -227,27 +222,24 @@ impl SampleObservations {
                 all.len() - 1
             })
         };
-        let of_location = |index: usize| {
-            let values = kitchen.aspects[index].values.len();
-            let of_value = |value: usize| model.confusion(kitchen, LocationId(index as u8), value);
-            let confusion: Vec<Vec<f64>> = (0..values).map(of_value).collect();
+        let of_location = |confusion: &Vec<Vec<f64>>| -> Vec<Vec<usize>> {
             let of_observed = |seen: usize| confusion.iter().map(|row| index_of(row[seen])).collect();
-            let weight_of = (0..values).map(of_observed).collect();
-            LocationObservations { confusion, weight_of }
+            (0..confusion.len()).map(of_observed).collect()
         };
-        let locations = (0..kitchen.locations.len()).map(of_location).collect();
+        let weight_of = confusions.iter().map(of_location).collect();
         let least = all.iter().copied().fold(1.0, f64::min);
         let [first, last] = [-PRECISIONS[1].ln() - SIDE, SIDE - least.ln()];
         let times: Vec<f64> =
             (0..=((last - first) / STEP).ceil() as usize).map(|point| (first + STEP * point as f64).exp()).collect();
         let at_points =
             |weight: f64| times.iter().map(|t| [(t * weight).ln_1p(), t * weight / (1.0 + t * weight)]).collect();
-        SampleObservations { weights: all.into_iter().map(at_points).collect(), locations }
+        SampleObservations { weights: all.into_iter().map(at_points).collect(), weight_of }
     }
 
-    /// Updates the belief about a location by an observation of it, where the value `truth` is displayed.
-    pub fn observe(&self, belief: &mut Dirichlet, location: usize, truth: usize) {
-        let LocationObservations { confusion, weight_of } = &self.locations[location];
+    /// Updates the belief about a location by an observation of it, where the value `truth` is displayed; `confusion` is
+    /// the probability of observing each value.
+    fn observe(&self, belief: &mut Dirichlet, location: usize, truth: usize, confusion: &[f64]) {
+        let weight_of = &self.weight_of[location];
         let values = belief.mean().len();
         // A belief that is as certain as a Dirichlet may be here stays what it is.
         if 1.0 - belief.mean()[truth] <= 2.0 * LEAST_MEAN * values as f64 {
@@ -256,7 +248,7 @@ impl SampleObservations {
         let alphas: Vec<f64> = (0..values).map(|value| belief.alpha(value)).collect();
         let (mut mean, mut second) = (vec![0.0; values], 0.0);
         let mut classes = vec![ValueClass::default(); self.weights.len()];
-        for (seen, &p) in confusion[truth].iter().enumerate().filter(|(_, p)| **p >= NEGLIGIBLE) {
+        for (seen, &p) in confusion.iter().enumerate().filter(|(_, p)| **p >= NEGLIGIBLE) {
             classes.fill(ValueClass::default());
             for (alpha, &weight) in alphas.iter().zip(&weight_of[seen]) {
                 classes[weight].alpha += alpha;

@@ -61,13 +61,10 @@ pub fn predict(
 }
 
 fn note_changes(kitchen: &Kitchen, before: State, after: State, weight: f64, flows: &mut Vec<Flow>) {
-    for index in 0..kitchen.locations.len() {
-        let (from, to) = (before.code(LocationId(index as u8)), after.code(LocationId(index as u8)));
-        if from == to {
-            continue;
-        }
-        let aspect = &kitchen.aspects[index];
-        let (Some(from), Some(to)) = (aspect.index_of(from), aspect.index_of(to)) else { continue };
+    for location in kitchen.changed(before, after) {
+        let index = location.index();
+        let [from, to] = [before, after].map(|state| kitchen.aspects[index].index_of(state.code(location)));
+        let (Some(from), Some(to)) = (from, to) else { continue };
         match flows.iter_mut().find(|flow| flow.aspect == index && flow.from == from && flow.to == to) {
             Some(flow) => flow.weight += weight,
             None => flows.push(Flow { aspect: index, from, to, weight }),

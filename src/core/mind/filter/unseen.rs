@@ -17,7 +17,7 @@ use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
 use crate::kitchen::state::MAX_LOCATIONS;
-use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen};
+use crate::kitchen::{Agent, AspectId, Kitchen};
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use crate::mind::model::HumanModel;
 
@@ -38,10 +38,10 @@ pub struct UnknownGazePeriod {
 pub fn watched(kitchen: &Kitchen) -> Vec<u32> {
     let own_hand = kitchen.hands[Agent::Human.index()];
     let bits = |button| {
-        let places = kitchen.watched(ButtonId(button as u8)).into_iter().filter(|&place| place != own_hand);
+        let places = kitchen.watched(button).into_iter().filter(|&place| place != own_hand);
         places.fold(0, |bits, place| bits | 1 << place.index())
     };
-    (0..kitchen.buttons[Agent::Human.index()].len()).map(bits).collect()
+    kitchen.button_ids(Agent::Human).map(bits).collect()
 }
 
 // Accounts for the time in which the gaze is known or unknown. A sample stands for the time since the previous sample, at

@@ -33,7 +33,7 @@ impl From<&TrajectoryLeg> for Leg {
             LegKind::Over => ArmPhase::Travels,
             LegKind::Down => ArmPhase::Presses,
         };
-        Leg { phase, presses: false, takes_s: leg.takes_s, poses: *leg.poses() }
+        Leg { phase, presses: false, takes_s: leg.takes_s, poses: leg.poses }
     }
 }
 

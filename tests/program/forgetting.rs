@@ -11,7 +11,7 @@ use tomcom_session::LogHeader;
 use tomcom_session::headless::SimulationShard;
 use tomcom_session::log::{LogWriter, RecordingLock};
 
-use crate::program::TOMCOM;
+use crate::program::{TOMCOM, files_below};
 
 /// A folder with recordings, and the folder that the program takes for the system's one for temporary files.
 pub struct RecordingsFolder {
@@ -99,19 +99,8 @@ impl RecordingsFolder {
 
     /// Every file, with what is in it, by its path.
     pub fn files(&self) -> BTreeMap<String, Vec<u8>> {
-        let mut found = BTreeMap::new();
-        let mut folders = vec![self.root.clone()];
-        while let Some(folder) = folders.pop() {
-            for entry in fs::read_dir(&folder).expect("a folder") {
-                let path = entry.expect("an entry").path();
-                let name = path.strip_prefix(&self.root).expect("below it").display().to_string();
-                match path.symlink_metadata().expect("it is there").is_dir() {
-                    true => folders.push(path),
-                    false => drop(found.insert(name, fs::read(&path).expect("a file"))),
-                }
-            }
-        }
-        found
+        let name = |path: &Path| path.strip_prefix(&self.root).expect("below it").display().to_string();
+        files_below(&self.root).iter().map(|path| (name(path), fs::read(path).expect("a file"))).collect()
     }
 }
 

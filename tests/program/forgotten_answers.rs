@@ -18,6 +18,7 @@ use tomcom_session::wall_display::AnswerDevice;
 use tomcom_session::{Event, LogHeader, TrialPhase};
 
 use crate::forgetting::{RecordingsFolder, ended};
+use crate::program::files_below;
 
 /// Words that stand in no other file.
 const WORDS: &str = "zweiundvierzig violette Teekannen";
@@ -86,12 +87,6 @@ fn answer(questionnaire: &Questionnaire, index: usize, words: &str) -> AnswerVal
         (_, AnswerFormat::Text { .. }) => AnswerValue::Text(words.to_string()),
         (_, form) => form.choose(1, None).expect("an option"),
     }
-}
-
-/// All files below a folder.
-fn files_below(folder: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(folder).expect("a folder").flatten().map(|entry| entry.path());
-    entries.flat_map(|path| if path.is_dir() { files_below(&path) } else { vec![path] }).collect()
 }
 
 /// The files below a folder that have these bytes.

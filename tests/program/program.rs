@@ -20,6 +20,13 @@ pub fn folder(name: &str) -> PathBuf {
     folder
 }
 
+/// All files below a folder.
+pub fn files_below(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let is_folder = |path: &Path| path.symlink_metadata().expect("it is there").is_dir();
+    entries.flat_map(|path| if is_folder(&path) { files_below(&path) } else { vec![path] }).collect()
+}
+
 pub fn tomcom(arguments: &[&str]) -> Output {
     Command::new(TOMCOM).args(arguments).stdin(Stdio::null()).output().expect("tomcom runs")
 }

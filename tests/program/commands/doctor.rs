@@ -7,13 +7,13 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::{check, complaint, figures};
+use super::{check, complaint, failed};
 use crate::program::{folder, session_file};
 
 #[test]
 fn doctor_looks_at_the_machine_and_says_how_to_mend_it() {
     let out = folder("doctor");
-    let found = figures(&["doctor", "--out", &out.join("new").display().to_string(), "--format", "json"], 1);
+    let found = failed(&["doctor", "--out", &out.join("new").display().to_string()]);
     let checks = found["checks"].as_array().expect("checks");
     let verdict = |name: &str| {
         checks.iter().find(|check| check["name"] == name).map(|check| check["verdict"].as_str().unwrap_or_default())
@@ -40,7 +40,7 @@ fn doctor_looks_at_what_a_session_names() {
     let taken = TcpListener::bind(("127.0.0.1", 0)).expect("a port");
     let port = taken.local_addr().expect("an address").port();
     let verdict = |settings: &str, name: &str| {
-        let found = figures(&["doctor", &session_file(&place, settings), "--format", "json"], 1);
+        let found = failed(&["doctor", &session_file(&place, settings)]);
         let check = found["checks"].as_array().and_then(|checks| checks.iter().find(|check| check["name"] == name));
         let told = |key: &str| check.and_then(|check| check[key].as_str()).unwrap_or_default().to_string();
         (told("verdict"), told("found"))

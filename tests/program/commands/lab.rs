@@ -7,19 +7,7 @@ use std::process::{Command, Output, Stdio};
 
 use tomcom_session::files::carried;
 
-use crate::program::{TOMCOM, done, folder, verified};
-
-/// The settings files below a folder.
-fn settings_below(folder: &Path, found: &mut BTreeSet<PathBuf>) {
-    for entry in fs::read_dir(folder).expect("a folder") {
-        let path = entry.expect("an entry").path();
-        if path.is_dir() {
-            settings_below(&path, found);
-        } else if path.extension().is_some_and(|kind| kind == "toml") {
-            found.insert(path);
-        }
-    }
-}
+use crate::program::{TOMCOM, done, files_below, folder, verified};
 
 /// Runs the program in a folder; its exit code and what it said on standard error.
 fn run_in(place: &Path, arguments: &[&str]) -> (Option<i32>, String) {
@@ -31,8 +19,9 @@ fn run_in(place: &Path, arguments: &[&str]) -> (Option<i32>, String) {
 
 #[test]
 fn the_program_carries_every_settings_file_of_the_project() {
-    let mut there = BTreeSet::new();
-    ["layouts", "recipes", "sessions"].iter().for_each(|folder| settings_below(Path::new(folder), &mut there));
+    let files = ["layouts", "recipes", "sessions"].map(|folder| files_below(Path::new(folder))).concat();
+    let is_settings = |path: &PathBuf| path.extension().is_some_and(|kind| kind == "toml");
+    let there: BTreeSet<PathBuf> = files.into_iter().filter(is_settings).collect();
     let carried: BTreeSet<PathBuf> = carried::FILES.iter().map(|(path, _)| PathBuf::from(path)).collect();
     assert_eq!(carried, there, "src/session/files/carried.rs and the files differ");
 }

@@ -21,9 +21,9 @@ fn check(arguments: &[&str], code: i32) -> Output {
     output
 }
 
-/// The one JSON object on stdout.
-fn figures(arguments: &[&str], code: i32) -> Value {
-    let output = check(arguments, code);
+/// The one JSON object of a command whose check fails, which the exit code 1 says.
+fn failed(arguments: &[&str]) -> Value {
+    let output = check(&[arguments, &["--format", "json"]].concat(), 1);
     serde_json::from_slice(&output.stdout).expect("one JSON object on stdout")
 }
 

@@ -4,8 +4,8 @@ use std::fs;
 
 use serde_json::Value;
 
-use super::{check, complaint, figures};
-use crate::program::{done, folder, session_file};
+use super::{check, complaint};
+use crate::program::{done, folder, json, session_file};
 
 #[test]
 fn a_closed_recording_is_excluded_and_taken_back_and_the_figures_say_so() {
@@ -17,14 +17,14 @@ fn a_closed_recording_is_excluded_and_taken_back_and_the_figures_say_so() {
     fs::write(&session, text).expect("written");
     let (session, out) = (session.to_str().expect("a path in UTF-8"), out.to_str().expect("a path in UTF-8"));
     let simulate = ["simulate", session, "--trials", "2", "--seed", "7", "--out", out];
-    let before = figures(&[&simulate[..], &["--format", "json"]].concat(), 0);
+    let before = json(&simulate);
     let recording = format!("{out}/seed7-S001");
     let log = fs::read(format!("{recording}/events.jsonl")).expect("a log");
-    let standing = || figures(&["replay", &recording, "--format", "json"], 0)["excluded"].clone();
+    let standing = || json(&["replay", &recording])["excluded"].clone();
     assert_eq!(standing(), Value::Null);
     check(&["exclude", &recording, "--reason", "the tracker slipped"], 0);
     assert_eq!(standing(), "the tracker slipped");
-    let after = figures(&[&simulate[..], &["--format", "json"]].concat(), 0);
+    let after = json(&simulate);
     assert_eq!((&after["excluded"], &after["trials"], &before["excluded"]), (&1.into(), &1.into(), &0.into()));
     assert_eq!(fs::read(format!("{recording}/events.jsonl")).expect("a log"), log, "the log stays as it is");
     let told = check(&["replay", &recording], 0);
@@ -49,12 +49,11 @@ fn compare_sets_assistants_beside_what_was_sent_and_opens_what_differs() {
         "[trial]\nseconds = 60.0\n[assistant]\nconcept = \"tom\"\n[human.inference]\nbeliefs = 32\nstates = 8\n",
     );
     let out = out.to_str().expect("a path in UTF-8");
-    let arguments =
-        ["simulate", session, "--trials", "2", "--condition", "assistant", "--out", out, "--format", "json"];
-    let recordings = figures(&arguments, 0);
+    let arguments = ["simulate", session, "--trials", "2", "--condition", "assistant", "--out", out];
+    let recordings = json(&arguments);
     let recordings: Vec<&str> =
         recordings["recordings"].as_array().expect("recordings").iter().filter_map(Value::as_str).collect();
-    let found = figures(&[&["compare"], &recordings[..], &["--with", "dev", "--format", "json"]].concat(), 0);
+    let found = json(&[&["compare"], &recordings[..], &["--with", "dev"]].concat());
     let pairs = found["pairs"].as_array().expect("pairs");
     let names: Vec<[&str; 2]> =
         pairs.iter().map(|pair| ["of", "with"].map(|key| pair[key].as_str().unwrap_or_default())).collect();
@@ -69,7 +68,7 @@ fn compare_sets_assistants_beside_what_was_sent_and_opens_what_differs() {
     let knew = &differences[differences.len() - 1]["knew"];
     assert_eq!(knew["beliefs"].as_array().map(Vec::len), Some(16), "every aspect");
     assert!(knew["advice"].is_object(), "{knew}");
-    let only = figures(&["compare", recordings[0], "--only", "dev", "--format", "json"], 0);
+    let only = json(&["compare", recordings[0], "--only", "dev"]);
     let only_pairs = only["pairs"].as_array().expect("pairs");
     assert_eq!(only_pairs.len(), 1, "{only_pairs:?}");
     assert_eq!((&only_pairs[0]["of"], &only_pairs[0]["with"]), (&pairs[1]["of"], &pairs[1]["with"]));
@@ -106,7 +105,7 @@ fn compare_sets_assistants_beside_what_was_sent_and_opens_what_differs() {
     assert!(!told(recordings[1]).contains("tomcom study"));
     check(&["simulate", session, "--trials", "1", "--condition", "none", "--out", &format!("{out}/alone")], 0);
     assert!(told(&format!("{out}/alone")).contains(study));
-    let swept = figures(&["compare", recordings[0], "--sweep", "--format", "json"], 0);
+    let swept = json(&["compare", recordings[0], "--sweep"]);
     let swept: Vec<u64> =
         swept["pairs"].as_array().expect("pairs").iter().filter_map(|pair| pair["window_actions"].as_u64()).collect();
     assert_eq!(swept, (0..=10).collect::<Vec<u64>>());
@@ -125,24 +124,24 @@ fn a_folder_is_listed_and_is_no_recording_where_one_is_meant() {
     fs::write(&log, cut.join("\n") + "\n").expect("cut");
     check(&["exclude", &format!("{out}/seed7-S003"), "--reason", "interrupted"], 0);
     fs::write(format!("{out}/seed7-S004/events.jsonl"), "{}\n").expect("damaged");
-    let list = figures(&["list", out, "--format", "json"], 0);
+    let list = json(&["list", out]);
     let rows = list["recordings"].as_array().expect("a list");
     let column = |name: &str| rows.iter().map(|row| row[name].clone()).collect::<Vec<_>>();
     assert_eq!(column("code"), [Value::Null, "S001".into(), "S002".into(), "S003".into()]);
     assert_eq!(column("state"), ["unreadable", "whole", "cut", "excluded"]);
-    let found = figures(&["list", out, "s003", "excluded", "--format", "json"], 0);
+    let found = json(&["list", out, "s003", "excluded"]);
     assert_eq!(found["recordings"], Value::from(vec![rows[3].clone()]), "a row with both words");
     let told = check(&["list", out, "s003", "unheard"], 0);
     let told = String::from_utf8_lossy(&told.stderr);
     assert!(told.contains("has \"unheard\" in its line") && !told.contains("s003"), "{told}");
     assert_eq!((&rows[3]["reason"], &rows[1]["kind"]), (&"excluded: interrupted".into(), &"simulated_trial".into()));
-    let whole = figures(&["replay", &format!("{out}/seed7-S001"), "--format", "json"], 0);
+    let whole = json(&["replay", &format!("{out}/seed7-S001")]);
     assert_eq!((&rows[1]["errors"], &rows[1]["trial_s"]), (&whole["errors"], &whole["trial_s"]));
     assert_eq!((&rows[1]["condition"], &rows[1]["arm"]), (&"none".into(), &"none".into()));
     // Figures of closed recordings are kept for the next list; what stands beside a log holds all the same.
-    assert_eq!(figures(&["list", out, "--format", "json"], 0), list);
+    assert_eq!(json(&["list", out]), list);
     check(&["exclude", &format!("{out}/seed7-S001"), "--reason", "a rehearsal"], 0);
-    assert_eq!(figures(&["list", out, "--format", "json"], 0)["recordings"][1]["state"], "excluded");
+    assert_eq!(json(&["list", out])["recordings"][1]["state"], "excluded");
     let told = String::from_utf8_lossy(&check(&["list", out], 0).stdout).into_owned();
     assert!(told.contains("excluded    seed7-S003  (excluded: interrupted)"), "{told}");
     assert!(told.ends_with(&format!("4 recordings in {out}\n")), "{told}");
@@ -154,18 +153,18 @@ fn a_folder_is_listed_and_is_no_recording_where_one_is_meant() {
     // All recordings of a folder are meant; another folder in it is none.
     fs::remove_dir_all(format!("{out}/seed7-S004")).expect("removed");
     fs::create_dir_all(format!("{out}/study")).expect("a folder");
-    let coded = figures(&["codes", out, "--format", "json"], 0);
+    let coded = json(&["codes", out]);
     assert_eq!(coded["recordings"].as_array().map(Vec::len), Some(3), "{coded}");
     let told = complaint(&["study", out, "--raters", "ra", "Rb"]);
     assert!(told.contains("no codes of the rater ra"), "{told}");
     assert!(complaint(&["exclude", &format!("{out}/seed7-S002"), "--back"]).contains("no exclusion of"));
     // All recordings of a participant are excluded at once, and included again.
     let state = |code: &str| {
-        let list = figures(&["list", out, "--format", "json"], 0);
+        let list = json(&["list", out]);
         let rows = list["recordings"].as_array().expect("a list").clone();
         rows.into_iter().find(|row| row["code"] == code).expect("a recording")["reason"].clone()
     };
-    let ruled = figures(&["exclude", out, "--code", "S002", "--reason", "asked for it", "--format", "json"], 0);
+    let ruled = json(&["exclude", out, "--code", "S002", "--reason", "asked for it"]);
     assert_eq!((ruled.as_array().map(Vec::len), &ruled[0]["excluded"]), (Some(1), &true.into()), "{ruled}");
     assert_eq!((state("S002"), state("S003")), ("excluded: asked for it".into(), "excluded: interrupted".into()));
     let told =
@@ -243,7 +242,7 @@ fn errors_of_a_recording_are_listed_as_commands_that_open_the_viewer_there() {
         assert!(believed.1.matches("(order 1)").count() <= 1 && !believed.1.contains(" more"), "{believed:?}");
     }
     // The same for programs.
-    let listed = figures(&["review", recording, "--errors", "--beliefs", "--format", "json"], 0);
+    let listed = json(&["review", recording, "--errors", "--beliefs"]);
     let listed = listed["landmarks"].as_array().expect("landmarks");
     assert!(listed.iter().any(|one| one["kind"] == "error" && one["from_s"].is_f64()), "{listed:?}");
     let told = list(&["--errors", "--beliefs"]);
@@ -274,5 +273,5 @@ fn errors_of_a_recording_are_listed_as_commands_that_open_the_viewer_there() {
         assert!(told_at(&format!("{}.{ms}", 60 * minutes + seconds)), "{line}");
     }
     let errors = listed.lines().count() as u64;
-    assert_eq!(Value::from(errors), figures(&["replay", recording, "--format", "json"], 0)["errors"]);
+    assert_eq!(Value::from(errors), json(&["replay", recording])["errors"]);
 }

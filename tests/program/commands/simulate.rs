@@ -5,12 +5,12 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::{check, complaint, figures};
-use crate::program::{folder, session_file};
+use super::{check, complaint, failed};
+use crate::program::{folder, json, session_file};
 
 #[test]
 fn kitchen_prints_the_state_space_and_the_plans() {
-    let sushi = figures(&["kitchen", "layouts/sushi.toml", "--format", "json"], 0);
+    let sushi = json(&["kitchen", "layouts/sushi.toml"]);
     assert_eq!(sushi["states"], "83878450387200000");
     assert_eq!(sushi["aspects"].as_array().map(Vec::len), Some(16));
     let plans = sushi["plans"].as_array().expect("plans");
@@ -18,7 +18,7 @@ fn kitchen_prints_the_state_space_and_the_plans() {
     lengths.sort_unstable();
     assert_eq!(lengths, [15, 15, 16, 16, 18, 19]);
     for layout in ["layouts/sushi.toml", "layouts/burger.toml"] {
-        let kitchen = figures(&["kitchen", layout, "--format", "json"], 0);
+        let kitchen = json(&["kitchen", layout]);
         for plan in kitchen["plans"].as_array().expect("plans") {
             let presses = plan["presses"].as_array().map(|presses| presses.len() as u64);
             assert_eq!(presses, plan["actions"].as_u64(), "{layout}: {plan}");
@@ -33,7 +33,7 @@ fn simulate_records_what_replay_verifies() {
     let out = out.to_str().expect("a path in UTF-8");
     let simulate =
         ["simulate", "sessions/default.toml", "--trials", "2", "--seed", "7", "--arm", "timed", "--out", out];
-    let found = figures(&[&simulate[..], &["--format", "json"]].concat(), 0);
+    let found = json(&simulate);
     for key in ["trials", "human_actions", "robot_actions", "errors", "signals", "orders_served", "presses_per_order"] {
         assert!(found[key].is_number(), "{key} in {found}");
     }
@@ -45,9 +45,9 @@ fn simulate_records_what_replay_verifies() {
     let mut related = 0;
     for recording in recordings {
         let recording = recording.as_str().expect("a path");
-        let verified = figures(&["replay", recording, "--verify", "--format", "json"], 0);
+        let verified = json(&["replay", recording, "--verify"]);
         assert_eq!((&verified["verified"], &verified["cut"]), (&Value::Bool(true), &Value::Bool(false)));
-        let replayed = figures(&["replay", recording, "--format", "json"], 0);
+        let replayed = json(&["replay", recording]);
         assert_eq!(replayed["events"], verified["events"]);
         related += replayed["belief_related_errors"].as_u64().expect("a number of errors");
         let log = fs::read_to_string(Path::new(recording).join("events.jsonl")).expect("a log");
@@ -62,7 +62,7 @@ fn simulate_records_what_replay_verifies() {
     let text = fs::read_to_string(&log).expect("a log").replacen("take nori", "take rice", 1);
     fs::write(&log, text).expect("the log can be written");
     let log = log.to_str().expect("a path in UTF-8");
-    assert_eq!(figures(&["replay", log, "--verify", "--format", "json"], 1)["verified"], Value::Bool(false));
+    assert_eq!(failed(&["replay", log, "--verify"])["verified"], Value::Bool(false));
 }
 
 #[test]
@@ -165,17 +165,17 @@ fn fit_writes_a_parameter_file_and_accuracy_tells_its_figures() {
     let session = session_file(&folder, QUICK);
     let few = "[inference]\nbeliefs = 8\nstates = 4\nmax_beliefs = 8\npredictions = 4\n";
     fs::write(&start, few).expect("the parameters can be written");
-    let simulated = figures(&["simulate", &session, "--out", &out, "--format", "json"], 0);
+    let simulated = json(&["simulate", &session, "--out", &out]);
     let recording = simulated["recordings"][0].as_str().expect("a recording");
-    let fit = ["fit", recording, "--start", &start, "--tries", "10", "--out", &fitted, "--format", "json"];
-    let found = figures(&[&fit[..], &["--parameters", "tau,lapse"]].concat(), 0);
+    let fit = ["fit", recording, "--start", &start, "--tries", "10", "--out", &fitted];
+    let found = json(&[&fit[..], &["--parameters", "tau,lapse"]].concat());
     assert_eq!(found["human_actions"], simulated["human_actions"]);
     let names: Vec<&str> =
         found["parameters"].as_array().expect("parameters").iter().filter_map(|one| one["name"].as_str()).collect();
     assert_eq!(names, ["tau", "lapse"]);
     // What was fitted is in force where a session names the file.
     let session = session_file(&folder, &format!("human_model = {fitted:?}\n{QUICK}"));
-    let again = figures(&["simulate", &session, "--out", &out, "--seed", "5", "--format", "json"], 0);
+    let again = json(&["simulate", &session, "--out", &out, "--seed", "5"]);
     let log = Path::new(again["recordings"][0].as_str().expect("a recording")).join("events.jsonl");
     let log = fs::read_to_string(log).expect("a log");
     let header: Value = serde_json::from_str(log.lines().next().unwrap_or_default()).expect("a header");

@@ -6,8 +6,8 @@ use std::process::Command;
 
 use serde_json::Value;
 
-use super::{complaint, figures};
-use crate::program::{TOMCOM, folder};
+use super::complaint;
+use crate::program::{TOMCOM, folder, json};
 
 /// A recording that is a copy of a golden one, and a film; both as arguments.
 fn recorded(name: &str, change: impl FnOnce(String) -> String) -> (PathBuf, [String; 2]) {
@@ -25,7 +25,7 @@ fn recorded(name: &str, change: impl FnOnce(String) -> String) -> (PathBuf, [Str
 #[test]
 fn films_are_attached_by_hand_and_copied() {
     let (recording, [log, film]) = recorded("video-by-hand", |log| log);
-    let found = figures(&["video", "attach", &log, &film, "--at", "12.5", "--copy", "--format", "json"], 0);
+    let found = json(&["video", "attach", &log, &film, "--at", "12.5", "--copy"]);
     let text = fs::read_to_string(recording.join("events.jsonl")).expect("a log");
     let started = text.lines().find(|line| line.contains("\"trial_started\"")).expect("a trial");
     let started: Value = serde_json::from_str(started).expect("an event");

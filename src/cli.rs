@@ -148,7 +148,7 @@ fn show_plan(args: &PlanArgs) -> Result<(), Failure> {
         plan::check_frozen(&args.session, &files, frozen)?;
         put_aside(&format!("The plan is the one that was frozen in {}.\n", frozen.display()));
     }
-    let figures = StudyProgress::from_study(&study, &args.session, &args.out)?;
+    let figures = StudyProgress::from_study(&study, &args.session, &args.out, args.frozen.as_deref())?;
     let Some(file) = &args.freeze else {
         return print(args.format, &figures, || plan::describe(&figures, doctor::columns()));
     };

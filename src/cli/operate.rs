@@ -152,6 +152,7 @@ pub(super) fn new_session(
                 kind: flags.participant,
                 compare,
                 observe: flags.observe,
+                frozen: flags.frozen.clone(),
             })?)
         }
     }

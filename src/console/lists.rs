@@ -33,6 +33,18 @@ pub enum ListReply {
     Taken,
 }
 
+/// Whether these letters are beginnings of some of these words, in their order. One letter is enough only for a word of one
+/// letter, and for the last.
+fn begin_words(letters: &str, words: &[String]) -> bool {
+    letters.is_empty()
+        || words.iter().enumerate().any(|(index, word)| {
+            let begun = letters.char_indices().map(|(at, letter)| at + letter.len_utf8());
+            let begun = begun.enumerate().take_while(|(_, end)| word.starts_with(&letters[..*end]));
+            let enough = |(at, end): &(usize, usize)| *at > 0 || *end == word.len() || *end == letters.len();
+            begun.filter(enough).any(|(_, end)| begin_words(&letters[end..], &words[index + 1..]))
+        })
+}
+
 impl ListCursor {
     /// Handles a key, where `rows` rows match the filter.
     pub fn key(&mut self, rows: usize, code: KeyCode) -> ListReply {
@@ -64,8 +76,8 @@ impl ListCursor {
     }
 
     /// Indices of the rows with these texts that match the filter, the best one first. Only the best kind of match is
-    /// kept, so that a whole code leaves its own row: each typed word begins a word; or each lies within a word; or the
-    /// typed letters are those of a line from the beginning of a word on, signs and spaces left out.
+    /// kept, so that a whole code leaves its own row: each typed word begins a word; or each lies within a word; or what is
+    /// typed is made of beginnings of a line's words, since the palette takes no spaces: "stoprobot".
     pub fn found(&self, rows: impl Iterator<Item = String>) -> Vec<usize> {
         let mut found = self.ranked(rows);
         let best = found.first().map(|((kind, _), _)| *kind);
@@ -101,8 +113,10 @@ impl ListCursor {
                 }
                 () if has(&|rest, typed| word_of(rest).contains(typed)) == all => Some((1, 0)),
                 () => {
-                    let mut lines = words().filter_map(|rest| rest.lines().next());
-                    lines.any(|line| joined(line).starts_with(&letters)).then_some((2, 0))
+                    let of_line = |line: &str| {
+                        line.split(|letter: char| !letter.is_alphanumeric()).map(str::to_string).collect::<Vec<_>>()
+                    };
+                    text.lines().any(|line| begin_words(&letters, &of_line(line))).then_some((2, 0))
                 }
             }
         };

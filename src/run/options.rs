@@ -46,6 +46,8 @@ pub struct SeriesRequest {
     pub compare: Option<SenderComparisonSettings>,
     /// Address at which observers can watch the wizard's screen.
     pub observe: Option<SocketAddr>,
+    /// File of the frozen plan that was asked for.
+    pub frozen: Option<PathBuf>,
 }
 
 /// Session settings given on the command line; `None` keeps the session file's value.

@@ -24,6 +24,9 @@ pub struct StudyProgress {
     /// Path of the session file with the plan.
     pub session: PathText,
     pub recordings: PathText,
+    /// File of the frozen plan that was asked for.
+    #[serde(skip)]
+    pub frozen: Option<PathBuf>,
     pub plan: String,
     /// Checksum of the plan and its settings.
     pub digest: String,
@@ -44,7 +47,12 @@ impl StudyProgress {
     ///
     /// # Errors
     /// A recording cannot be read or does not belong to the plan.
-    pub fn from_study(study: &Study, session: &Path, out: &Path) -> Result<StudyProgress, LiveError> {
+    pub fn from_study(
+        study: &Study,
+        session: &Path,
+        out: &Path,
+        frozen: Option<&Path>,
+    ) -> Result<StudyProgress, LiveError> {
         let (made, simulated) = recordings_of(study, out)?;
         let codes = study.plan.codes();
         let progress =
@@ -53,13 +61,14 @@ impl StudyProgress {
         Ok(StudyProgress {
             session: session.to_path_buf().into(),
             recordings: out.to_path_buf().into(),
+            frozen: frozen.map(Path::to_path_buf),
             plan: study.plan.name.clone(),
             digest: study.digest.clone(),
             seed: study.session.seed,
             planned: participants.len(),
             finished: participants.iter().filter(|one| one.done() == one.steps.len()).count(),
             simulated,
-            remarks: remarks(study).into_iter().chain(uncounted(made.len(), simulated, session, out)).collect(),
+            remarks: remarks(study).into_iter().chain(uncounted(made.len(), simulated, session, out, frozen)).collect(),
             participants,
         })
     }
@@ -74,8 +83,8 @@ fn remarks(study: &Study) -> Vec<String> {
 }
 
 /// Why recordings that somebody made may not show in the progress.
-fn uncounted(counted: usize, simulated: u64, session: &Path, out: &Path) -> Option<String> {
-    let operate = operate_command(session, out, "CODE", None);
+fn uncounted(counted: usize, simulated: u64, session: &Path, out: &Path, frozen: Option<&Path>) -> Option<String> {
+    let operate = operate_command(session, out, frozen, "CODE", None);
     let missing = if out.exists() { "" } else { ", which does not exist" };
     let out = out.display();
     match (counted, simulated) {
@@ -234,7 +243,8 @@ pub fn describe(figures: &StudyProgress, columns: u16) -> String {
     let is_wide = figures.participants.iter().any(|one| 2 * width(&whole(one)) > columns);
     let one = |progress: &ParticipantProgress| {
         let first = if is_wide { group(progress) } else { whole(progress) };
-        let operate = operate_command(&figures.session, &figures.recordings, &progress.code, progress.kind);
+        let StudyProgress { session, recordings, frozen, .. } = figures;
+        let operate = operate_command(session, recordings, frozen.as_deref(), &progress.code, progress.kind);
         let stands = stands(progress, &operate);
         let stands = stands.split_once(": ").map_or(stands.as_str(), |(_, stands)| stands);
         let attempts = attempts(progress);

@@ -125,8 +125,9 @@ impl Planned {
     }
 
     fn stands(&self, progress: &ParticipantProgress) -> String {
-        let SeriesRequest { files, out, kind, .. } = &self.series;
-        stands(progress, &operate_command(&files.path, out, &progress.code, progress.kind.or(*kind)))
+        let SeriesRequest { files, out, kind, frozen, .. } = &self.series;
+        let kind = progress.kind.or(*kind);
+        stands(progress, &operate_command(&files.path, out, frozen.as_deref(), &progress.code, kind))
     }
 
     /// The question whether a recording is meant, where others in the folder are of another version of the plan.
@@ -407,14 +408,21 @@ pub(super) fn stands(progress: &ParticipantProgress, operate: &str) -> String {
 
 /// The command that records a participant of a plan. `kind`: that of the participant, if not the session file's; an
 /// external one is chosen by the session file alone.
-pub(super) fn operate_command(session: &Path, out: &Path, code: &str, kind: Option<ParticipantKind>) -> String {
+pub(super) fn operate_command(
+    session: &Path,
+    out: &Path,
+    frozen: Option<&Path>,
+    code: &str,
+    kind: Option<ParticipantKind>,
+) -> String {
     let kind = kind.filter(|kind| *kind != ParticipantKind::External);
     let kind = kind.map_or(String::new(), |kind| format!(" --participant {}", kind.name()));
     let out = match out.to_str() {
         Some(DEFAULT_OUT) => String::new(),
         _ => format!(" --out {}", out.display()),
     };
-    format!("tomcom operate {} --code {code}{kind}{out}", session.display())
+    let frozen = frozen.map_or(String::new(), |file| format!(" --frozen {}", file.display()));
+    format!("tomcom operate {} --code {code}{kind}{out}{frozen}", session.display())
 }
 
 /// The recordings of a study in the folder `out`, and the number of simulated ones.

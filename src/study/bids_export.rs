@@ -207,15 +207,21 @@ fn participants(planned: &[Planned], told: &[BidsRecording]) -> FileResult<Vec<B
                     row.consent = consent;
                 }
             }
-            None => rows.push(BidsParticipant {
-                label: one.label.clone(),
-                code: spec.participant.code.clone(),
-                kind: spec.participant.kind.name().to_string(),
-                group: spec.step.as_ref().map(|step| step.group.clone()),
-                recordings: 1,
-                left_out,
-                consent: consent.unwrap_or_default(),
-            }),
+            None => {
+                // A recording whose code was corrected names the group of the other participant.
+                let own = planned.iter().filter(|other| other.label == one.label);
+                let own = own.min_by_key(|own| own.header.correction.is_some());
+                let step = own.and_then(|own| own.header.session.step.as_ref());
+                rows.push(BidsParticipant {
+                    label: one.label.clone(),
+                    code: spec.participant.code.clone(),
+                    kind: spec.participant.kind.name().to_string(),
+                    group: step.map(|step| step.group.clone()),
+                    recordings: 1,
+                    left_out,
+                    consent: consent.unwrap_or_default(),
+                });
+            }
         }
     }
     Ok(rows)

@@ -15,7 +15,7 @@ from page import browser
 
 STATES = ("welcome", "instruction", "ready", "practice", "running 0", "served", "paused", "over", "questionnaire", "answered", "answers", "thanks")
 # States whose names begin so: the first of each, and all.
-ONE_OF, ALL_OF = ("recipe", "highlight", "no effect"), ("questionnaire:", "tutorial:", "probe:")
+ONE_OF, ALL_OF = ("recipe", "highlight", "no effect", "robot: stopped"), ("questionnaire:", "tutorial:", "probe:")
 # The wall, and a telephone.
 SIZES = ((1920, 1080), (390, 844))
 # What axe cannot decide, and why it is right.

@@ -28,8 +28,8 @@ UPRIGHT, TOUCH_PX, CAPITALS_PX = [(390, 844), (360, 640)], 44, 6.5
 # Least width of what the robot holds, wherever its hand stands.
 HELD_PX = 32
 
-# So far away at most, in hundredths of the stage's width, a reason stands from what was pressed.
-NEAR_EM = 6
+# So far away at most, in em, a reason stands from what was pressed, since it hides no name.
+NEAR_EM = 15
 
 MEASURE = """([states, DISTANCE_M, NEAR_EM]) => Object.entries(states).map(([name, sight]) => {
   Stage.show(sight, () => 17);
@@ -66,7 +66,7 @@ MEASURE = """([states, DISTANCE_M, NEAR_EM]) => Object.entries(states).map(([nam
     if (Boolean(over(a.made)) !== Boolean(over(b.made))) continue;
     if (meets(a, b)) found.push(`"${a.said}" meets "${b.said}"`);
   }
-  const solid = [...document.querySelectorAll(".pill, .spot.order, .shelf, .spot .furniture, .key, .tag, .flash, .recipe.open, .bin, .instruction .card")].filter(isSeen);
+  const solid = [...document.querySelectorAll(".pill, .spot.order, .shelf, .spot .furniture, .key, .tag, .flash, .recipe.open, .bin, .go-on p, .instruction .card")].filter(isSeen);
   const related = (a, b) => a.contains(b) || b.contains(a);
   for (const text of texts.filter(({ made }) => !over(made))) for (const made of solid) {
     if (!related(made, text.made) && meets(text, box(made)) && !(made.matches(".furniture") && made.parentNode.contains(text.made))) {
@@ -101,18 +101,22 @@ MEASURE = """([states, DISTANCE_M, NEAR_EM]) => Object.entries(states).map(([nam
   for (const made of document.querySelectorAll(".highlight, .framed, .hinted, .intended")) for (const part of [null, "::before"]) for (const [outer, inner] of bands(made, part)) {
     for (const text of texts) if (!over(text.made) && !text.made.matches(".key") && meets(text, outer) && !inside(text, inner)) found.push(`the frame of ${made.className} crosses "${text.said}"`);
   }
-  // A reason hides nothing that is pressed next, a recipe nothing that the robot does.
+  // A reason hides nothing that is pressed next or read, and nothing that the robot does; a recipe neither, with its frame.
+  const theirs = document.querySelector(".zone.robot"), em = parseFloat(getComputedStyle(stageMade).fontSize);
+  const robots = [...document.querySelectorAll(".gripper"), ...(stageMade.classList.contains("upright") ? [] : [theirs])].filter(isSeen);
   for (const why of [...document.querySelectorAll(".why")].filter((made) => isSeen(made) && made.textContent)) {
-    for (const made of solid.filter((one) => !one.matches(".flash"))) if (meets(box(why), box(made))) found.push(`"${why.textContent}" hides ${made.className} ${made.textContent || made.parentNode.className}`);
+    for (const made of [...solid.filter((one) => !one.matches(".flash")), ...robots]) if (meets(box(why), box(made))) found.push(`"${why.textContent}" hides ${made.className} ${made.textContent || made.parentNode.className}`);
+    for (const text of texts.filter(({ made }) => !over(made))) if (meets(box(why), text)) found.push(`"${why.textContent}" hides "${text.said}"`);
   }
   // It stands at what was pressed.
   const press = sight.presses[0], line = document.querySelector(".why.says");
   if (press && press.why) {
     const a = box(line), b = box(document.querySelectorAll("storage" in press.at ? ".shelf" : ".spot")["storage" in press.at ? press.at.storage : press.at.location]);
-    const away = Math.hypot(Math.max(0, b.left - a.right, a.left - b.right), Math.max(0, b.top - a.bottom, a.top - b.bottom)) / parseFloat(getComputedStyle(stageMade).fontSize);
+    const away = Math.hypot(Math.max(0, b.left - a.right, a.left - b.right), Math.max(0, b.top - a.bottom, a.top - b.bottom)) / em;
     if (away > NEAR_EM) found.push(`a reason is ${away.toFixed(1)} em away from what was pressed`);
   }
-  const open = document.querySelector(".recipe.open"), theirs = document.querySelector(".zone.robot");
+  const open = document.querySelector(".recipe.open");
+  for (const made of open ? [...solid, ...texts.map(({ made }) => made)] : []) if (!related(open, made) && meets(grown(box(open), 0.45 * em), box(made))) found.push(`the frame of the recipe meets ${made.className} "${made.textContent}"`);
   if (open && meets(box(open), box(theirs))) found.push("the recipe hides the robot's side");
   // Buttons of a card stand in it.
   for (const made of document.querySelectorAll(".sheet.open .card button:not(.given *)")) {
@@ -192,6 +196,35 @@ def too_small(size, language, measured):
     return touched + [f"{text}: capitals of {px:.1f} px" for text, px in measured["lowest"].items() if px < CAPITALS_PX and language != "longer"]
 
 
+def lines_stay(page, every):
+    """Reasons that stay when what they are about is over, or where a recipe opens."""
+    recipe = next(sight["signal"] for name, sight in every.items() if name.startswith("recipe of"))
+    boxes = "['.why.says', '.recipe.open'].map((name) => document.querySelector(name).getBoundingClientRect())"
+    reasons = {name: sight for name, sight in every.items() if name.startswith("no effect")}
+    for name, pressed in reasons.items():
+        show(page, every["empty"])
+        show(page, pressed)
+        show(page, {**pressed, "signal": recipe})
+        if page.ask(f"(([a, b]) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom)({boxes})"):
+            yield f"a recipe opens below a reason: {name}"
+    for name in ("robot: stopped", "questionnaire", "paused"):
+        show(page, every["empty"])
+        show(page, pressed)
+        show(page, every[name])
+        if page.ask("Boolean(document.querySelector('.why.says'))"):
+            yield f"a reason is there still: {name}"
+
+
+# Items and dishes that look alike, and are told apart without their colours.
+TOLD_APART = (("item", "shrimp cut", "crab cut"), ("dish", "shrimp nigiri", "salmon nigiri"), ("dish", "crab maki", "salmon maki"))
+
+
+def drawn_alike(page):
+    """Pairs of these that differ in nothing but colours."""
+    shapes = lambda kind, name: re.sub("#[0-9a-f]{6}", "", page.ask(f"Art.{kind}(Stage.scene(), {json.dumps(name)})"))
+    return [f"{one} and {other} differ in colours alone" for kind, one, other in TOLD_APART if shapes(kind, one) == shapes(kind, other)]
+
+
 def words_in(text):
     """Its words of two letters or more, without case."""
     return {word.casefold() for word in re.findall(r"[^\W\d_]{2,}", text)}
@@ -238,6 +271,7 @@ def main():
                     scene = scene or here
                     if page.ask("document.querySelector('.readiness').textContent.includes(Stage.scene().words['ready font'])") == has_font(here["language"]):
                         failed.setdefault(f"the readiness check is wrong about the font for {language}", []).append(kitchen)
+                    failed |= {problem: [kitchen] for problem in (drawn_alike(page) if kitchen == "sushi" else [])}
                     for size in [SIZES[0], UPRIGHT[0]] if language in SUSHI_ALONE else SIZES + UPRIGHT:
                         page.page.set_viewport_size({"width": size[0], "height": size[1]})
                         page.page.wait_for_timeout(150)
@@ -248,6 +282,8 @@ def main():
                             show(page, every["highlight of robot_hand"])
                             if page.ask("document.querySelectorAll('.highlight').length !== 1 || !document.querySelector('.robot-hand.highlight')"):
                                 failed.setdefault("a signal about the robot's hand is not at the hand", []).append(f"{kitchen} {language} {size[0]}x{size[1]}")
+                            for problem in lines_stay(page, every):
+                                failed.setdefault(problem, []).append(f"{kitchen} {language} {size[0]}x{size[1]}")
                             show(page, every["empty"])
                             covered = page.ask(HAND.replace("PLACES", json.dumps(places(kitchen))).replace("LEAST_PX", str(HELD_PX)))
                             if covered:

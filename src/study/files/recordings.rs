@@ -286,6 +286,7 @@ impl Part {
         let excluded = all.iter().find_map(|part| part.told.excluded.clone()).flatten();
         let aborted = all.iter().find_map(|part| part.told.aborted.as_ref());
         let waived = all.iter().find_map(|part| part.told.criterion_waived.clone());
+        let presses = all.iter().map(|part| part.told.presses).sum();
         let void = |reason: &str| RecordingOutcome::Void { reason: reason.to_string() };
         let outcome = if !self.told.ended && self.running {
             RecordingOutcome::Running
@@ -297,6 +298,9 @@ impl Part {
             void("criterion not met")
         } else if !any(|part| part.trial_over) || !self.is_last_phase_done(&all) {
             RecordingOutcome::Open
+        } else if self.step.period.is_some() && presses == 0 && excluded.is_none() {
+            // As in the study's analysis (`ExclusionStatus::left_out`).
+            void("no press in it")
         } else {
             excluded.clone().map_or(RecordingOutcome::Complete, |reason| RecordingOutcome::Excluded { reason })
         };
@@ -316,7 +320,7 @@ impl Part {
             step: self.step.clone(),
             consent: any(|part| part.consent),
             instructed: any(|part| part.instructed),
-            presses: all.iter().map(|part| part.told.presses).sum(),
+            presses,
             stand,
             waived,
             excluded,

@@ -289,7 +289,7 @@ fn the_command_that_goes_on_with_a_rehearsal_says_that_it_is_one() {
     let study = study(|files| files.spec.participant.kind = ParticipantKind::Display);
     let open = PlanRecording { kind: ParticipantKind::Simulated, ..made(&study, 0, 1, RecordingOutcome::Open) };
     let out = folder("rehearsal");
-    let mut figures = StudyProgress::from_study(&study, Path::new("plan.toml"), &out).expect("an empty folder");
+    let mut figures = StudyProgress::from_study(&study, Path::new("plan.toml"), &out, None).expect("an empty folder");
     figures.participants[0] = ParticipantProgress::from_recordings(&study, 0, &[open]).expect("of the plan");
     let told = describe(&figures, u16::MAX);
     assert!(told.contains("go on with tomcom operate plan.toml --code P01 --participant simulated --out "), "{told}");
@@ -300,7 +300,7 @@ fn the_command_that_goes_on_with_a_rehearsal_says_that_it_is_one() {
 fn a_plan_fits_a_narrow_terminal_with_letters_for_its_conditions() {
     let study = session_file("all-arms").study().expect("a plan");
     let figures =
-        StudyProgress::from_study(&study, Path::new("plan.toml"), &folder("narrow")).expect("an empty folder");
+        StudyProgress::from_study(&study, Path::new("plan.toml"), &folder("narrow"), None).expect("an empty folder");
     // The folder's path may be long.
     let figures = StudyProgress { remarks: Vec::new(), ..figures };
     let titles = study.plan.conditions.iter().map(|arm| arm.title());

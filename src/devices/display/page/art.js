@@ -32,6 +32,7 @@ const Art = (() => {
     return `#${channel(0)}${channel(8)}${channel(4)}`;
   }
 
+  const isDark = (colour) => [0.3, 0.59, 0.11].reduce((sum, weight, at) => sum + weight * parseInt(colour.slice(1 + 2 * at, 3 + 2 * at), 16), 0) < 128;
   const shadow = (cx, cy, rx, ry) => `<ellipse cx="${cx}" cy="${cy}" rx="${rx}" ry="${ry}" fill="#000" opacity=".13"/>`;
   const outline = (colour, width = 2.2) => `stroke="${shade(colour, -0.42)}" stroke-width="${width}" stroke-linejoin="round"`;
 
@@ -100,6 +101,10 @@ const Art = (() => {
         <path d="M15 70 l-4 14 M24 75 l1 13" fill="none" stroke="${shade(c, -0.35)}" stroke-width="4" stroke-linecap="round"/>`;
     },
     morsels(c, light = "#fff1e6") {
+      // Dark ones are sticks, since colour alone is not enough to tell two contents apart.
+      const stick = (y) => `<g transform="translate(50 ${y}) rotate(-14)"><rect x="-40" y="-9" width="80" height="18" rx="6" fill="${light}" ${outline(c)}/>
+        <path d="M-40 0 V-3 q0 -6 6 -6 H34 q6 0 6 6 V0 Z" fill="${c}"/><path d="M-36 4.5 H36" stroke="${c}" stroke-width="1.6"/></g>`;
+      if (isDark(c)) return shadow(50, 84, 40, 6) + stick(30) + stick(51) + stick(72);
       const piece = (x, y, turn) => `<g transform="translate(${x} ${y}) rotate(${turn})"><rect x="-17" y="-11.5" width="34" height="23" rx="10" fill="${light}" ${outline(c)}/>
         <path d="M-14 -7.5 a10 10 0 0 1 8 -4 h12 a10 10 0 0 1 8 4 q-14 7 -28 0 z" fill="${c}"/>
         <path d="M-6 0 v7 M3 0 v7" stroke="${c}" stroke-width="2.6" stroke-linecap="round"/></g>`;
@@ -169,18 +174,21 @@ const Art = (() => {
         <ellipse cx="50" cy="44" rx="42" ry="11" fill="${shade(c, 0.6)}" ${outline(c)}/>`;
     },
     nigiri(c, light) {
-      const top = light || shade(c, 0.62);
+      // Flesh of another colour inside is that of shellfish, which has a tail and a seam.
+      const across = [0, 1, 2, 3].map((i) => `M${26 + 16 * i} ${34 - (i === 1 || i === 2 ? 4 : 0)} q6 9 0 18`).join(" ");
+      const tail = light ? `<path d="M72 40 C78 22 84 10 99 5 L94 20 L100 32 C94 44 86 48 76 46 Z" fill="${shade(c, -0.3)}" ${outline(c)}/>` : "";
       return `${shadow(50, 82, 42, 6)}
         <rect x="12" y="46" width="76" height="33" rx="15" fill="#fffdf6" stroke="#b9b09c" stroke-width="2.4"/>
-        ${[[26, 66], [38, 70], [62, 70], [76, 66]].map(([x, y]) => `<path d="M${x - 4} ${y} q4 -4 8 0" fill="none" stroke="#cfc6b2" stroke-width="2" stroke-linecap="round"/>`).join("")}
+        ${[[26, 66], [38, 70], [62, 70], [76, 66]].map(([x, y]) => `<path d="M${x - 4} ${y} q4 -4 8 0" fill="none" stroke="#cfc6b2" stroke-width="2" stroke-linecap="round"/>`).join("")}${tail}
         <path d="M7 56 C8 34 28 24 54 24 C78 24 93 36 93 55 C86 62 80 52 70 54 C56 58 46 52 34 56 C24 60 14 63 7 56 Z" fill="${c}" ${outline(c)}/>
-        ${[0, 1, 2, 3].map((i) => `<path d="M${26 + 16 * i} ${34 - (i === 1 || i === 2 ? 4 : 0)} q6 9 0 18" fill="none" stroke="${top}" stroke-width="3.2" stroke-linecap="round"/>`).join("")}
+        <path d="${light ? "M10 46 Q50 28 88 46 M22 32 V50 M34 28 V48 M66 28 V48 M77 32 V50" : across}" fill="none" stroke="${light || shade(c, 0.62)}" stroke-width="3.2" stroke-linecap="round"/>
         <path d="M43 24 h13 v54 h-13 z" fill="#24402f" stroke="#13251b" stroke-width="2"/>`;
     },
     roll(c, light) {
+      const stick = `<rect x="-10" y="-6" width="20" height="12" fill="${light}" stroke="${shade(c, -0.35)}" stroke-width="1.6"/><path d="M-9 -5.2 H9 V0 H-9 Z" fill="${c}"/>`;
       const piece = (x, y) => `<g transform="translate(${x} ${y})"><path d="M-23 0 v18 a23 13 0 0 0 46 0 v-18 z" fill="#1d3427" stroke="#101f17" stroke-width="2"/>
         <ellipse rx="23" ry="13" fill="#24402f" stroke="#101f17" stroke-width="2"/><ellipse rx="19" ry="10.2" fill="#fffdf6"/>
-        <ellipse rx="9.5" ry="5.4" fill="${c}" stroke="${shade(c, -0.35)}" stroke-width="1.6"/><path d="M-5 -1 q5 -3 10 0" fill="none" stroke="${light || shade(c, 0.6)}" stroke-width="1.8"/></g>`;
+        ${light ? stick : `<ellipse rx="9.5" ry="5.4" fill="${c}" stroke="${shade(c, -0.35)}" stroke-width="1.6"/><path d="M-5 -1 q5 -3 10 0" fill="none" stroke="${shade(c, 0.6)}" stroke-width="1.8"/>`}</g>`;
       return shadow(50, 84, 44, 7) + piece(50, 30) + piece(27, 54) + piece(73, 54);
     },
     burger(c, wrap = "#3f7fbf") {
@@ -283,6 +291,5 @@ const Art = (() => {
       if (arms[number]) return svg(`<path d="M36 8 H64 V36 H92 V64 H64 V92 H36 V64 H8 V36 H36 Z" fill="currentColor" opacity=".35"/><path d="${arms[number]}" fill="currentColor"/>`);
       return svg(`<circle cx="50" cy="50" r="40" fill="none" stroke="currentColor" stroke-width="9"/><text x="50" y="54" font-size="54" font-weight="700" text-anchor="middle" dominant-baseline="central" fill="currentColor">${sticks[number]}</text>`);
     },
-    SHAPES: [...Object.keys(ITEMS), ...Object.keys(PLACES)],
   };
 })();

@@ -49,9 +49,7 @@ const Hands = (() => {
   function push(button) {
     const drawn = document.querySelector(`[data-button="${CSS.escape(button)}"]`);
     if (!drawn) return;
-    drawn.classList.remove("pushed");
-    void drawn.offsetWidth;
-    drawn.classList.add("pushed");
+    Stage.replay(drawn, "pushed");
     // Another stage must not play it once more.
     drawn.addEventListener("animationend", ({ animationName }) => ["pushed", "tried"].includes(animationName) && drawn.classList.remove("pushed"));
   }

@@ -203,10 +203,7 @@ const Probe = (() => {
     chosen = number;
     if (!shown.confidence) return answer(chosen, null);
     waits = true;
-    const isByKeys = Boolean(parts.all.querySelector(".at"));
-    update();
-    if (isByKeys) mark(parts.all.querySelector("[data-sure]"));
-    return undefined;
+    return update();
   }
 
   /** One of the buttons is touched. */

@@ -14,7 +14,10 @@ const Questions = (() => {
   const isOwn = (question) => draft.item === question.item;
   const pending = (question) => (isOwn(question) ? draft.value : null);
   const isSkipped = (question) => (isOwn(question) ? draft.isSkipped : question.skipped);
-  const keep = (question, value) => { draft = { ...NONE, item: question.item, value }; };
+  const keep = (question, value) => {
+    Stage.say("");
+    draft = { ...NONE, item: question.item, value };
+  };
   const give = (question, answer) => {
     draft = { ...draft, isGiven: true };
     tell({ kind: "answer", item: question.item, answer });
@@ -286,7 +289,6 @@ const Questions = (() => {
   function type(question, key) {
     const typed = pending(question) ?? String(question.answer ?? "");
     const next = key === "⌫" ? typed.slice(0, -1) : pending(question) === null ? key : typed + key;
-    Stage.say("");
     if (next.length <= LONGEST_ENTRY) keep(question, next);
     redraw();
   }

@@ -1,7 +1,7 @@
 "use strict";
 /** The line that says why a press had no effect: at its place, until the next press or for a moment. */
 const Reason = (() => {
-  let made = null;
+  let made = null, stand = () => {};
 
   function build(element) {
     made = element("div", "why");
@@ -16,27 +16,25 @@ const Reason = (() => {
     return tutorial?.missed ? words["tutorial another first"] : "";
   }
 
-  // What is needed next: whatever is pressed, read or held. The line hides none of it, if there is room.
-  const NEEDED = ".pill, .spot .furniture, .dock, .shelf, .spot.order, .key, .recipe.open, .gripper, .tag, .flash, .sheet.open :is(button, p, h1, h2, textarea, .anchor, .slider, .slider b, .number, .given, .choices, .left), .lesson:not(.large)";
-  // What is better seen, too, but not at any distance.
-  const NAMES = ".name, .zone h2, .status span, .go-on p";
-  // Lengths in em. Size of words, height of a line and room around the words; air around what is needed, also for a line about no place, and beside what a tutorial marks with a frame;
+  // What is needed next: whatever is pressed, read or held, and on a wall the side where the robot moves. The line hides none of it, if there is room.
+  const NEEDED = "#stage:not(.upright) .zone.robot, .name, .zone h2, .status span, .go-on p, .pill, .spot .furniture, .dock, .shelf, .spot.order, .key, .recipe.open, .gripper, .tag, .flash, .sheet.open :is(button, p, h1, h2, textarea, .anchor, .slider, .slider b, .number, .given, .choices, .left), .lesson:not(.large)";
+  // Lengths in em. Size of words, height of a line and room around the words; air around what is needed, also for a line about no place, beside what a tutorial marks with a frame, and beside a card that opens, which grows and has a frame;
   // how far the line is moved in one try.
-  const WORDS = 1.6, LINE = 1.8, PAD = [2.4, 0.5], AIR = 0.1, CLEAR = 0.3, MARK = 0.6, STEP = 0.9;
-  // How far away, in em, the line would rather stand than hide a square em of something, or any of a name and a square em of it, or stand over a card's edge, or have another line.
-  const HIDES = 60, HIDES_NAME = [4.2, 0.08], OVER = 5000, BROKEN = 0.1;
+  const WORDS = 1.6, LINE = 1.8, PAD = [2.4, 0.5], AIR = 0.1, CLEAR = 0.3, MARK = 0.6, OPENS = 1.4, STEP = 0.9;
+  // How far away, in em, the line would rather stand than hide a square em of something, or stand over a card's edge, or have another line.
+  const HIDES = 60, OVER = 5000, BROKEN = 0.1;
   // So small words can still be read on a screen in the hand, which alone is narrower than a line.
   const LEAST = 0.72;
 
   /** The areas of what is seen of these, in em from the stage's corner, with air around them. */
   function obstacles(names, stage, em, own) {
     const area = (made) => {
-      const box = made.getBoundingClientRect(), air = names === NEEDED ? (made.matches(".hinted") ? MARK : own ? AIR : CLEAR) : 0;
+      const box = made.getBoundingClientRect(), air = names !== NEEDED || made.matches(".zone") ? 0 : made.matches(".recipe") ? OPENS : made.matches(".hinted") ? MARK : own ? AIR : CLEAR;
       return [(box.left - stage.left) / em - air, (box.top - stage.top) / em - air, (box.right - stage.left) / em + air, (box.bottom - stage.top) / em + air];
     };
-    const isSeen = (made) => made.checkVisibility({ visibilityProperty: true, opacityProperty: true });
-    // The name of what was pressed may be hidden: the line says what it is about.
-    return [...document.querySelectorAll(names)].filter((made) => isSeen(made) && !(own && made.matches(".name") && own.contains(made))).map(area);
+    // A card that opens counts at once.
+    const isSeen = (made) => made.checkVisibility({ visibilityProperty: true, opacityProperty: !made.matches(".recipe") });
+    return [...document.querySelectorAll(names)].filter(isSeen).map(area);
   }
 
   /** The shapes that words can have, in one line to three: their size, the number of lines, and the size of words, which are smaller rather than broken. */
@@ -54,7 +52,7 @@ const Reason = (() => {
   }
 
   /** The area for one of these shapes that is nearest to what was pressed, hides nothing and stands over no card's edge; else the one that costs least. */
-  function nearest([l, t, r, b], shapes, [width, height], needed, names, cards, [hidesAny, hidesName]) {
+  function nearest([l, t, r, b], shapes, [width, height], needed, cards) {
     const hidden = (areas, x, y, w, h) => areas.reduce((sum, [al, at, ar, ab]) => sum + Math.max(0, Math.min(ar, x + w) - Math.max(al, x)) * Math.max(0, Math.min(ab, y + h) - Math.max(at, y)), 0);
     const crosses = ([al, at, ar, ab], x, y, w, h) => al < x + w && x < ar && at < y + h && y < ab && (x < al || x + w > ar || y < at || y + h > ab);
     let best = null, least = Infinity;
@@ -70,7 +68,7 @@ const Reason = (() => {
         // Of two that are as near, the one whose middle is nearer.
         const far = away + 0.05 * Math.hypot(x + w / 2 - (l + r) / 2, y + h / 2 - (t + b) / 2) + BROKEN * (lines - 1);
         if (far >= least) continue;
-        const name = hidden(names, x, y, w, h), cost = far + HIDES * hidden(needed, x, y, w, h) + (name && hidesAny + hidesName * name) + (cards.some((card) => crosses(card, x, y, w, h)) ? OVER : 0);
+        const cost = far + HIDES * hidden(needed, x, y, w, h) + (cards.some((card) => crosses(card, x, y, w, h)) ? OVER : 0);
         if (cost < least) [best, least] = [{ area: [x, y, w, h], small }, cost];
       }
     }
@@ -81,11 +79,14 @@ const Reason = (() => {
   function place(said, at, own, root, { room, text, put, replay }) {
     made.replaceChildren(text("span", "", said));
     if (!said) return hide();
-    const stage = root.getBoundingClientRect(), em = room.em[0] * stage.width, size = [stage.width / em, stage.height / em], most = size[0] - 1.2;
-    const measure = (words) => room.widthOf(words, WORDS * room.em[0]) / room.em[0], shapes = shapesOf(said, measure, most);
-    const { area: [x, y, w, h], small } = nearest(at(stage, em), shapes, size, ...[NEEDED, NAMES, ".sheet.open .card"].map((names) => obstacles(names, stage, em, own)), own ? HIDES_NAME : [0, HIDES]);
-    made.style.setProperty("--words", small);
-    put(made, [x / size[0], y / size[1], w / size[0], h / size[1]]);
+    stand = () => {
+      const stage = root.getBoundingClientRect(), em = room.em[0] * stage.width, size = [stage.width / em, stage.height / em], most = size[0] - 1.2;
+      const measure = (words) => room.widthOf(words, WORDS * room.em[0]) / room.em[0], shapes = shapesOf(said, measure, most);
+      const { area: [x, y, w, h], small } = nearest(at(stage, em), shapes, size, ...[NEEDED, ".sheet.open .card"].map((names) => obstacles(names, stage, em, own)));
+      made.style.setProperty("--words", small);
+      put(made, [x / size[0], y / size[1], w / size[0], h / size[1]]);
+    };
+    stand();
     return replay(made, "says");
   }
 
@@ -98,13 +99,16 @@ const Reason = (() => {
   /** Shows the line at what was pressed, as near as it can stand without hiding what is needed next. */
   const draw = (said, pressed, root, kit) => place(said, edgesOf(pressed), pressed, root, kit);
 
-  /** Says something that is about no place, near what can be done, or in the middle of a free area of the stage, or of the stage below; it hides no name, either. */
+  /** Says something that is about no place, near what can be done, or in the middle of a free area of the stage, or of the stage below. */
   function say(said, does, [x, y, w, h] = [0.5, 0.965, 0, 0], root, kit) {
     const middle = ({ width, height }, em) => [0, 1].flatMap(() => [((x + w / 2) * width) / em, ((y + h / 2) * height) / em]);
     place(said, does ? edgesOf(does) : middle, null, root, kit);
   }
 
+  /** Makes room for a card that has opened. */
+  const move = () => made.classList.contains("says") && stand();
+
   const hide = () => made.classList.remove("says");
 
-  return { build, wordsOf, draw, say, hide };
+  return { build, wordsOf, draw, say, move, hide };
 })();

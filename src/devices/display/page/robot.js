@@ -17,26 +17,23 @@ const Robot = (() => {
 
   /** The rectangle of this size in em around a point. */
   const around = ([x, y], size, [wide, high]) => [x - (size * wide) / 2, y - (size * high) / 2, size * wide, size * high];
-  const overlaps = ([ax, ay, aw, ah], [bx, by, bw, bh]) => ax < bx + bw && bx < ax + aw && ay < by + bh && by < ay + ah;
   const isInside = ([ax, ay, aw, ah], [bx, by, bw, bh]) => ax >= bx && ay >= by && ax + aw <= bx + bw && ay + ah <= by + bh;
   const centre = ([x, y, w, h]) => [x + w / 2, y + h / 2];
 
-  /** What the hand must not cover: places and storages with their names and keys, and whatever else is taken. */
+  /** What the hand must not cover: places and storages with their names, and whatever else is taken. */
   function obstacles(scene, room, taken) {
     const [wide, high] = room.em, spots = [...scene.locations, ...scene.storages];
     const names = spots.filter(({ kind }) => kind !== "order").map((spot) => {
       const size = room.nameSize(spot), width = room.widthOf(spot.label, size * wide);
       return [centre(spot.area)[0] - width / 2, spot.area[1] - 1.4 * size * high, width, 1.4 * size * high];
     });
-    const keyed = room.isUpright ? [] : scene.buttons.filter(({ does }) => does === "use" || does === "take");
-    const keys = keyed.map(({ does, at }) => (does === "use" ? scene.locations : scene.storages)[at].area).map(([x, y, w, h]) => [x + w - 1.6 * wide, y + h - 2.4 * high, 2.2 * wide, 2.4 * high]);
-    return [...spots.map(({ area }) => area), ...names, ...keys, ...taken];
+    return [...spots.map(({ area }) => area), ...names, ...taken];
   }
 
   /** Where something of this size stands beside a place, clear of recipes where that can be; undefined where there is no room. */
   function beside({ area, kind }, size, room, others, cards) {
     // What is the robot's, it takes on its own side.
-    const within = [room.sides()[0], [0, 0, 1, 1]].find((zone) => overlaps(zone, area));
+    const within = [room.sides()[0], [0, 0, 1, 1]].find((zone) => Room.overlaps(zone, area));
     const [[x, y, w, h], [wide, high], [cx, cy]] = [area, room.em, centre(area)];
     const [across, down] = [wide, high].map((em) => (size / 2 + (kind === "order" ? FRAME : GAP)) * em);
     // Rather on the side from which the arm comes.
@@ -45,7 +42,7 @@ const Robot = (() => {
     for (const taken of [[...others, ...cards], others]) {
       for (const aside of [0, 0.25, -0.25, 0.5, -0.5]) for (const [left, top, dx, dy] of sides) {
         const at = [left + (dy ? aside * w : 0), top + (dx ? aside * h : 0)], rect = around(at, size, [wide, high]);
-        if (isInside(rect, within) && !taken.some((other) => overlaps(rect, other))) return { at, towards: [dx, dy] };
+        if (isInside(rect, within) && !taken.some((other) => Room.overlaps(rect, other))) return { at, towards: [dx, dy] };
       }
     }
     return undefined;

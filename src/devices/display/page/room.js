@@ -12,7 +12,7 @@ const Room = (scene, fontFamily) => {
   const ratio = scene.display_m[0] / scene.display_m[1];
   const ruler = document.createElement("canvas").getContext("2d");
 
-  const overlaps = ([ax, ay, aw, ah], [bx, by, bw, bh]) => ax < bx + bw && bx < ax + aw && ay < by + bh && by < ay + ah;
+  const { overlaps } = Room;
   const around = (rects) => {
     const x = Math.min(...rects.map((r) => r[0])), y = Math.min(...rects.map((r) => r[1]));
     return [x, y, Math.max(...rects.map((r) => r[0] + r[2])) - x, Math.max(...rects.map((r) => r[1] + r[3])) - y];
@@ -92,7 +92,10 @@ const Room = (scene, fontFamily) => {
   function taken() {
     const titles = sides().map(([x, y, w]) => [x, y, w, 0.05]);
     const names = named.map((spot) => nameArea(spot, nameSize(spot)));
-    return [...scene.locations.map(framed), ...names, ...scene.storages.map((shelf) => shelf.area), ...titles, ...scene.tags.map((tag) => tag.area)];
+    // Keys hang over the right edges of places and storages.
+    const keyed = scene.buttons.flatMap(({ does, at }) => (does === "use" ? scene.locations[at] : does === "take" ? scene.storages[at] : []));
+    const keys = keyed.map(({ area: [x, y, w, h] }) => [x + w - 0.016, y + h - 0.024 * ratio, 0.022, 0.024 * ratio]);
+    return [...scene.locations.map(framed), ...names, ...keys, ...scene.storages.map((shelf) => shelf.area), ...titles, ...scene.tags.map((tag) => tag.area)];
   }
 
   /**
@@ -181,6 +184,8 @@ const Room = (scene, fontFamily) => {
     forLesson,
   };
 };
+
+Room.overlaps = ([ax, ay, aw, ah], [bx, by, bw, bh]) => ax < bx + bw && bx < ax + aw && ay < by + bh && by < ay + ah;
 
 /** The areas that a page of the tutorial is about: what it frames and its signal shows, what the robot does, which is watched, and what is asked about; else
  * both sides. A button of the person is in none of them. */

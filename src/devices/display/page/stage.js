@@ -340,7 +340,7 @@ const Stage = (() => {
   function sayOfRobot(does) {
     root.dataset.robot = does;
     parts.robots.querySelector("h2").textContent = scene.words[does ? `robot ${does.replace("_", " ")}` : "robot"];
-    parts.goOn.replaceChildren(text("p", "", does === "stopped" ? scene.words["robot go on"] : ""));
+    parts.goOn.replaceChildren(...(does === "stopped" ? [text("p", "", scene.words["robot go on"])] : []));
     [parts.robots, parts.goOn].forEach((made) => fitWords(made));
   }
 
@@ -372,8 +372,6 @@ const Stage = (() => {
   function drawSheet(sight, left) {
     const { stage, practice } = sight;
     root.dataset.stage = stage;
-    // The reason of an ineffective press is removed when the phase of the trial changes.
-    if (shown && shown.stage !== stage) Reason.hide();
     const name = practice && stage === "ready" ? "practice" : practice && stage === "over" ? "practice over" : stage.replace("_", " ");
     parts.sheet.className = `sheet ${stage === "running" ? "" : "open"} ${BIG.includes(stage) ? "big" : ""} ${stage}`;
     if (stage === "questionnaire" && sight.question) return Questions.draw(parts.sheet, sight.question, scene.words, { element, text });
@@ -424,6 +422,9 @@ const Stage = (() => {
   /** What the sheet depends on; in the tutorial also presses, since each removes the line that says what is missing. */
   const onSheet = ({ stage, practice, question, tutorial, probe, presses }) => [stage, practice, question, tutorial, probe, tutorial && presses];
 
+  /** What a line is said in: it goes with the phase, the question, the robot's stop. */
+  const saidIn = ({ stage, checks, question, probe, robot_does }) => [stage, checks, question?.title, question?.item, probe?.probe, probe?.question, robot_does === "stopped"].join("/");
+
   /** `left` tells the seconds that a probe or the trial still has. */
   function show(sight, left = () => 0) {
     if (!scene) return;
@@ -433,13 +434,15 @@ const Stage = (() => {
       Sound.play("signal");
       Sound.say(inWords(sight.signal));
     } else if (shown && shown.signal && !sight.signal) Sound.say("");
-    // What was said is about what was asked or done then.
-    if (shown && (shown.stage !== sight.stage || shown.question?.item !== sight.question?.item)) Reason.hide();
     // During a freeze probe the program sends no contents; afterwards the kitchen is as it was.
     drawContents(sight.contents);
+    if (!shown || JSON.stringify(shown.signal) !== JSON.stringify(sight.signal)) {
+      drawSignal(sight.signal, sight.contents);
+      Reason.move();
+    }
     drawPresses(sight);
+    if (shown && saidIn(shown) !== saidIn(sight)) Reason.hide();
     drawIntention(sight.intention);
-    if (!shown || JSON.stringify(shown.signal) !== JSON.stringify(sight.signal)) drawSignal(sight.signal, sight.contents);
     if (!shown || JSON.stringify(onSheet(shown)) !== JSON.stringify(onSheet(sight))) drawSheet(sight, left);
     drawTarget(sight);
     Status.draw(sight, left, scene.words);
@@ -471,9 +474,10 @@ const Stage = (() => {
 
   /** Says something that is about no place: near what can be done, in a trial where other texts open; nothing takes back what was said. */
   function say(name) {
-    if (!shown || !marks.acts) return;
+    if (!shown || !marks.acts) return undefined;
+    if (!name) return Reason.hide();
     const does = [...root.querySelectorAll(DOES)].find((made) => made.checkVisibility({ visibilityProperty: true }));
-    Reason.say(name ? scene.words[name] : "", does, shown.stage === "running" ? parts.free : undefined, root, { room, put, replay, text });
+    return Reason.say(scene.words[name], does, shown.stage === "running" ? parts.free : undefined, root, { room, put, replay, text });
   }
 
   /** What was pressed does nothing, or, where it is one of the kitchen's buttons, nothing yet. */
@@ -531,5 +535,5 @@ const Stage = (() => {
     return [(x - box.left) / box.width, (y - box.top) / box.height];
   }
 
-  return { build, show, resize, flash, mark, refuse, say, sayNothing, label, useBadges, greet, askCode, point, isUpright, scene: () => scene, shown: () => shown, asks: () => Boolean(shown && shown.probe) || Tutorial.practises() };
+  return { build, show, resize, flash, mark, refuse, say, sayNothing, label, useBadges, greet, askCode, point, replay, isUpright, scene: () => scene, shown: () => shown, asks: () => Boolean(shown && shown.probe) || Tutorial.practises() };
 })();

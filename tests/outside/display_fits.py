@@ -29,7 +29,7 @@ UPRIGHT, TOUCH_PX, CAPITALS_PX = [(390, 844), (360, 640)], 44, 6.5
 HELD_PX = 32
 
 # So far away at most, in em, a reason stands from what was pressed, since it hides no name.
-NEAR_EM = 15
+NEAR_EM = 17
 
 MEASURE = """([states, DISTANCE_M, NEAR_EM]) => Object.entries(states).map(([name, sight]) => {
   Stage.show(sight, () => 17);

@@ -317,17 +317,28 @@ fn a_trial_of_a_plan_that_the_wizard_ends_counts_and_one_that_is_left_stays_open
     fs::copy(run.log.folder().join(LOG_NAME), cut.join(&name).join(LOG_NAME)).expect("copied");
     assert_eq!(recordings::of_plan(&cut, "study").expect("readable").0[0].outcome, RecordingOutcome::Open);
     assert!(!run.session().is_step_done(), "left now, it can be continued");
+    let press = Event::Press { agent: Agent::Human, button: "take rice".to_string(), at_ns: None, button_box: false };
+    assert_eq!(run.input(press), None);
     assert_eq!(run.input(Event::TrialEnded { reason: TrialEndReason::Wizard }), None);
     run.go_through();
     run.close();
     assert_eq!(outcome(), RecordingOutcome::Complete);
-    let aborted = folder("aborted");
-    let mut run = Run::new(&aborted, wanted(1, true));
-    run.next_phase();
-    assert_eq!(run.input(Event::TrialStarted), None);
-    assert_eq!(run.input(Event::TrialAborted { reason: "fire alarm".to_string() }), None);
-    assert!(run.session().is_step_done(), "left now, it is over");
-    run.close();
-    let outcome = recordings::of_plan(&aborted, "study").expect("readable").0[0].outcome.clone();
-    assert_eq!(outcome, RecordingOutcome::Void { reason: "aborted (fire alarm)".to_string() });
+    // What the study leaves out is to be recorded again.
+    for (ends, void) in [
+        (Event::TrialAborted { reason: "fire alarm".to_string() }, "aborted (fire alarm)"),
+        (Event::TrialEnded { reason: TrialEndReason::Wizard }, "no press in it"),
+    ] {
+        let out = folder("void");
+        let mut run = Run::new(&out, wanted(1, true));
+        run.next_phase();
+        assert_eq!(run.input(Event::TrialStarted), None);
+        assert_eq!(run.input(ends), None);
+        if run.session().aborted.is_none() {
+            run.go_through();
+        }
+        assert!(run.session().is_step_done(), "left now, it is over");
+        run.close();
+        let outcome = recordings::of_plan(&out, "study").expect("readable").0[0].outcome.clone();
+        assert_eq!(outcome, RecordingOutcome::Void { reason: void.to_string() });
+    }
 }

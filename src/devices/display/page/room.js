@@ -94,7 +94,7 @@ const Room = (scene, fontFamily) => {
     const names = named.map((spot) => nameArea(spot, nameSize(spot)));
     // Keys hang over the right edges of places and storages.
     const keyed = scene.buttons.flatMap(({ does, at }) => (does === "use" ? scene.locations[at] : does === "take" ? scene.storages[at] : []));
-    const keys = keyed.map(({ area: [x, y, w, h] }) => [x + w - 0.016, y + h - 0.024 * ratio, 0.022, 0.024 * ratio]);
+    const keys = keyed.map(({ area: [x, y, w, h] }) => [x + w - 0.016, y + h - 0.024 * ratio, 0.018, 0.024 * ratio]);
     return [...scene.locations.map(framed), ...names, ...keys, ...scene.storages.map((shelf) => shelf.area), ...titles, ...scene.tags.map((tag) => tag.area)];
   }
 

@@ -114,8 +114,11 @@ fn settle_with_another(terminal: &Terminal, name: &str, kept: &[String]) {
     terminal.see("error 2 is the first without a code");
     terminal.see("R1: wrong about cooking pot");
     terminal.see("R2: race");
-    let settled =
-        [("2", "saved: error 2, race"), ("u", "saved: code of error 2 removed"), ("C-y", "saved: error 2, race")];
+    let settled = [
+        ("2", "code saved; all is settled"),
+        ("u", "saved: code of error 2 removed"),
+        ("C-y", "code saved; all is settled"),
+    ];
     press_each(terminal, &settled);
     terminal.key("C-c");
     terminal.is_whole(0);

@@ -16,16 +16,17 @@ use futures::stream::{self, Stream};
 use hyper_util::rt::{TokioExecutor, TokioIo, TokioTimer};
 use hyper_util::server::conn::auto;
 use hyper_util::service::TowerToHyperService;
-use re_protos::log_msg::v1alpha1 as messages;
+use re_protos::log_msg::v1alpha1::{self as messages, log_msg::Msg};
 use re_protos::sdk_comms::v1alpha1::message_proxy_service_server::{MessageProxyService, MessageProxyServiceServer};
 use re_protos::sdk_comms::v1alpha1::{
     ReadMessagesRequest, ReadMessagesResponse, ReadTablesRequest, ReadTablesResponse, WriteMessagesRequest,
     WriteMessagesResponse, WriteTableRequest, WriteTableResponse,
 };
 use re_sdk::SizeBytes;
+use re_sdk::StoreId;
 use re_sdk::external::re_grpc_server::cors_layer;
-use re_sdk::external::re_log_encoding::ToTransport;
 use re_sdk::external::re_log_encoding::rrd::Compression;
+use re_sdk::external::re_log_encoding::{ToApplication, ToTransport};
 use re_sdk::log::{Chunk, LogMsg};
 use re_sdk::sink::{LogSink, SinkFlushError};
 use tokio::net::{TcpListener, TcpStream};
@@ -49,29 +50,13 @@ const PONG: Duration = Duration::from_secs(20);
 const LAST: Duration = Duration::from_secs(1);
 /// Pause after a failure to accept a connection, such as too many open files.
 const AGAIN: Duration = Duration::from_millis(100);
-/// Memory that a kept message needs besides its data, in bytes.
+/// Memory that a kept message takes besides its data, in bytes: the entries of its number and its entity.
 const OVERHEAD: usize = 512;
-
-/// A message of the stream, as received from the SDK or encoded for viewers.
-#[derive(Clone)]
-enum StreamMessage {
-    Told(Arc<LogMsg>),
-    Encoded(messages::log_msg::Msg),
-}
-
-impl StreamMessage {
-    /// The message as viewers receive it; `None` if the message cannot be encoded.
-    fn encoded(&self) -> Option<messages::log_msg::Msg> {
-        match self {
-            StreamMessage::Told(message) => message.to_transport(Compression::LZ4).ok(),
-            StreamMessage::Encoded(message) => Some(message.clone()),
-        }
-    }
-}
 
 /// State that the stream and all connected viewers share.
 struct SharedStream {
-    kept: Mutex<KeptMessages<StreamMessage>>,
+    /// Messages as viewers receive them: in the SDK's form, a message takes some ten times the memory.
+    kept: Mutex<KeptMessages<Msg>>,
     /// Number of messages of the stream so far; the channel closes at the end of the stream.
     told: watch::Receiver<u64>,
 }
@@ -114,17 +99,17 @@ async fn over(mut told: watch::Receiver<u64>) {
 
 impl LogSink for ViewerServer {
     fn send(&self, message: LogMsg) {
-        let bytes = OVERHEAD + message.total_size_bytes() as usize;
+        let Ok(encoded) = message.to_transport(Compression::LZ4) else { return };
+        let bytes = bytes(&encoded);
         let chunk = match &message {
             LogMsg::ArrowMsg(store, data) if store.is_recording() => Chunk::from_arrow_msg(data).ok(),
             _ => None,
         };
-        let message = StreamMessage::Told(Arc::new(message));
         let mut kept = self.shared.lock();
         match chunk {
-            Some(chunk) if !chunk.is_static() => kept.add(message, bytes, &chunk.entity_path().to_string()),
+            Some(chunk) if !chunk.is_static() => kept.add(encoded, bytes, &chunk.entity_path().to_string()),
             // The recording's name and the viewer's layout have no chunk.
-            timeless => kept.add_timeless(message, bytes, timeless.map(|chunk| said(&chunk))),
+            timeless => kept.add_timeless(encoded, bytes, timeless.map(|chunk| said(&chunk))),
         }
         drop(kept);
         self.tell.send_modify(|told| *told += 1);
@@ -142,15 +127,19 @@ fn said(chunk: &Chunk) -> String {
     format!("{} {}", chunk.entity_path(), components.join(" "))
 }
 
+/// Memory that a kept message takes, in bytes.
+fn bytes(message: &Msg) -> usize {
+    OVERHEAD + message.total_size_bytes() as usize
+}
+
 /// Merges pieces (chunks) of one entity into one.
-fn merged(pieces: &[StreamMessage]) -> Option<(StreamMessage, usize)> {
+fn merged(pieces: &[Msg]) -> Option<(Msg, usize)> {
     let mut chunks = Vec::new();
     let mut recording = None;
     for piece in pieces {
-        let StreamMessage::Told(message) = piece else { return None };
-        let LogMsg::ArrowMsg(store, data) = message.as_ref() else { return None };
-        recording = Some(store.clone());
-        chunks.push(Chunk::from_arrow_msg(data).ok()?);
+        let Msg::ArrowMsg(data) = piece else { return None };
+        recording = data.store_id.clone();
+        chunks.push(Chunk::from_arrow_msg(&data.to_application(()).ok()?).ok()?);
     }
     while chunks.len() > 1 {
         let pairs = chunks.chunks(2).map(|pair| match pair {
@@ -159,20 +148,21 @@ fn merged(pieces: &[StreamMessage]) -> Option<(StreamMessage, usize)> {
         });
         chunks = pairs.collect::<Option<Vec<Chunk>>>()?;
     }
-    let message = LogMsg::ArrowMsg(recording?, chunks.first()?.to_arrow_msg().ok()?);
-    let encoded = message.to_transport(Compression::LZ4).ok()?;
-    let bytes = OVERHEAD + encoded.total_size_bytes() as usize;
-    Some((StreamMessage::Encoded(encoded), bytes))
+    let recording = StoreId::try_from(recording?).ok()?;
+    let message = chunks.first()?.to_arrow_msg().ok()?.to_transport((recording, Compression::LZ4)).ok()?;
+    let message = Msg::ArrowMsg(message);
+    let bytes = bytes(&message);
+    Some((message, bytes))
 }
 
 impl SharedStream {
-    fn lock(&self) -> MutexGuard<'_, KeptMessages<StreamMessage>> {
+    fn lock(&self) -> MutexGuard<'_, KeptMessages<Msg>> {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The first message whose number is at least `from`, with the message's number; waits if there is none yet. `None`
     /// at the end of the stream.
-    async fn next(&self, from: u64) -> Option<(u64, StreamMessage)> {
+    async fn next(&self, from: u64) -> Option<(u64, Msg)> {
         let mut told = self.told.clone();
         loop {
             told.mark_unchanged();
@@ -210,7 +200,7 @@ impl MessageProxyService for ViewerService {
             let shared = shared.clone();
             async move {
                 let (number, message) = shared.next(from).await?;
-                let log_msg = Some(messages::LogMsg { msg: message.encoded() });
+                let log_msg = Some(messages::LogMsg { msg: Some(message) });
                 Some((Ok(ReadMessagesResponse { log_msg }), number + 1))
             }
         });

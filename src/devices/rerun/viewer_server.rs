@@ -55,7 +55,7 @@ const OVERHEAD: usize = 512;
 
 /// State that the stream and all connected viewers share.
 struct SharedStream {
-    /// Messages as viewers receive them: in the SDK's form, a message takes some ten times the memory.
+    /// Messages in the compressed form that viewers receive: in the SDK's form, each has an Arrow schema in memory.
     kept: Mutex<KeptMessages<Msg>>,
     /// Number of messages of the stream so far; the channel closes at the end of the stream.
     told: watch::Receiver<u64>,

@@ -7,6 +7,7 @@
 library(jsonlite)
 
 folder <- commandArgs(trailingOnly = TRUE)[1]
+if (is.na(folder)) stop("usage: Rscript read_recording.R sessions/2026-03-14-P07-1")
 lines <- readLines(file.path(folder, "events.jsonl"), encoding = "UTF-8")
 header <- fromJSON(lines[1], simplifyVector = FALSE)
 if (!is.null(header$continues)) stop("a later part: the events before are in ", header$continues$recording)

@@ -5,6 +5,7 @@
 # Prints the same as read_tables.py.
 
 folder <- commandArgs(trailingOnly = TRUE)[1]
+if (is.na(folder)) stop("usage: Rscript read_tables.R sessions/study")
 trials <- read.csv(file.path(folder, "trials.csv"), na.strings = "", stringsAsFactors = FALSE)
 actions <- read.csv(file.path(folder, "actions.csv"), na.strings = "", stringsAsFactors = FALSE)
 

@@ -33,6 +33,8 @@ def read(file):
     return tables
 
 
+if len(sys.argv) != 2:
+    sys.exit(__doc__)
 tables = read(sys.argv[1])
 for name, table in sorted(tables.items()):
     print(f"{name}: {len(table)} samples")

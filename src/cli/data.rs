@@ -295,7 +295,7 @@ fn listed(found: &ParticipantData) -> String {
 }
 
 /// What is not deleted although it is or may be about the participant, as text with a line and a reason each, what still
-/// names the code, and what cannot be known.
+/// names the code, which plans ask for the participant, and what cannot be known.
 fn left(found: &ParticipantData) -> String {
     let lines: String = found.left.iter().map(|left| format!("  {}: {}\n", left.path.display(), left.reason)).collect();
     let lines = if lines.is_empty() { lines } else { format!("not deleted:\n{lines}") };
@@ -307,5 +307,12 @@ fn left(found: &ParticipantData) -> String {
             found.code
         ),
     };
-    lines + &naming + UNKNOWN
+    let still_asks = |plan: &String| {
+        format!(
+            "the plan {plan} still asks for {}: leave the code in the plan, since without it those after it would get other orders \
+             of conditions\n",
+            found.code
+        )
+    };
+    lines + &naming + &found.plans.iter().map(still_asks).collect::<String>() + UNKNOWN
 }

@@ -3,13 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
+use serde_json::Value;
 
 use super::failure::Failure;
 use super::output::{OutputFormat, print, progress, put};
 use super::review::AskedLandmarks;
 use crate::run::open_viewer::{
     OngoingRecording, RecordedLandmark, RerunReviewOutcome, RerunReviewRequest, RerunStreamFile, RerunViewerError,
-    landmarks, review, running, save, unshown_films, until_asked_to_end,
+    landmarks, length, review, running, save, unshown_films, until_asked_to_end,
 };
 use tomcom_core::base::text::PathText;
 use tomcom_core::base::time::SessionTime;
@@ -48,6 +49,9 @@ struct LandmarkSummary {
     /// Null if it lasts to the end of the recording.
     until_s: Option<f64>,
     words: String,
+    /// The same in fields, by kind.
+    #[serde(flatten)]
+    fields: Value,
 }
 
 /// Prints the landmarks that are asked for in these recordings, each as the command that opens the viewer there, with its end
@@ -64,7 +68,7 @@ pub(super) fn list_landmarks(recordings: &[PathBuf], asked: AskedLandmarks) -> R
     let mut all = Vec::new();
     for recording in recordings {
         let mut text = String::new();
-        for RecordedLandmark { kind, from, until, words } in landmarks(recording, &kinds)? {
+        for RecordedLandmark { kind, from, until, words, fields } in landmarks(recording, &kinds)? {
             // A false belief can last as short as the estimate tells.
             if until.is_some_and(|until| until.secs_since(from) < asked.least) {
                 continue;
@@ -72,7 +76,7 @@ pub(super) fn list_landmarks(recordings: &[PathBuf], asked: AskedLandmarks) -> R
             if asked.format == OutputFormat::Json {
                 let (recording, kind) = (recording.display().to_string(), kind.name());
                 let (from_s, until_s) = (from.as_secs_f64(), until.map(SessionTime::as_secs_f64));
-                all.push(LandmarkSummary { recording, kind, from_s, until_s, words });
+                all.push(LandmarkSummary { recording, kind, from_s, until_s, words, fields });
                 continue;
             }
             // To the millisecond, as the viewer and exported annotations have it.
@@ -103,6 +107,20 @@ pub(super) fn open(
     web: bool,
     at: Option<SessionTime>,
 ) -> Result<(), Failure> {
+    let at = match at {
+        Some(at) => {
+            let end = length(&recordings)?;
+            if at.is_shown_after(end) {
+                let help = format!("a time on the trial's clock, up to {end}");
+                return Err(Failure::Wrong(miette::miette!(
+                    help = help,
+                    "found --at {at}, after the end: the recording is {end} long"
+                )));
+            }
+            Some(at.min(end))
+        }
+        None => None,
+    };
     for one in running(&recordings)? {
         put(&still_running(&one))?;
     }

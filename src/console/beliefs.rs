@@ -6,12 +6,10 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::concept::ConceptName;
 use tomcom_core::communication::recommendation::aspects_told;
 use tomcom_core::kitchen::{AspectId, AspectKind, LocationId};
+use tomcom_core::measures::sequences::THINKS;
 use tomcom_session::history::belief_track;
 use tomcom_session::settings::WizardVisibility;
 use tomcom_session::{Session, TrialPhase};
-
-/// Least expected probability of a value for the console to say that the participant believes that value.
-const THINKS: f32 = 0.5;
 
 /// Whether an estimated belief of the participant is probably false, unsure or right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -53,7 +51,7 @@ pub fn beliefs(session: &Session, model: &ConsoleModel) -> Vec<EstimatedBelief> 
         let aspect = AspectId(index as u8);
         let (thinks, truth) = (usize::from(held.believes), session.kitchen.true_value(session.state, aspect));
         let standing = match held.is_false() {
-            true if thinks != truth && held.p >= THINKS => BeliefCorrectness::False,
+            true if thinks != truth && f64::from(held.p) >= THINKS => BeliefCorrectness::False,
             true => BeliefCorrectness::Unsure,
             // A belief that an offered signal is about counts as unsure even if its most probable value is true.
             false if offered.contains(&aspect) => BeliefCorrectness::Unsure,

@@ -49,12 +49,12 @@ const MS: u64 = 1_000_000;
 const PIECE: Duration = Duration::from_millis(300);
 /// Duration of a piece (chunk) of a stream file, in session time. Every piece of every entity costs some 2 kB in the
 /// file besides its rows, and some 6 kB of memory until the index at the end of the file is written.
-const PIECE_OF_FILE: SessionTime = SessionTime(60_000_000_000);
+const PIECE_OF_FILE: SessionTime = SessionTime(120_000_000_000);
 /// Largest size of rows that wait for the end of their piece of the stream, in bytes: of one entity, and of all.
 const WAITING_BYTES: u64 = 1 << 20;
 const WAITING_IN_ALL: u64 = 16 << 20;
 /// Size of the past data that is kept for viewers that connect later, in bytes.
-const KEPT_BYTES: usize = 64 << 20;
+const KEPT_BYTES: usize = 32 << 20;
 /// Least time between two gaze samples that viewers of a running session get; more frequent samples could not be seen.
 const GAZE_EVERY: SessionTime = SessionTime(33_000_000);
 

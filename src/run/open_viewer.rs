@@ -6,12 +6,13 @@ use std::net::{Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use serde_json::{Value, json};
 use tempfile::TempPath;
 
 use crate::run::terminal::asked_to_end;
 use tomcom_core::base::text::printable;
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::measures::raters::CodableErrors;
+use tomcom_core::measures::raters::{CodableErrors, ErrorCauseCode, RaterCodes};
 use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_devices::rerun::{FilmFrame, RerunWriter, ShownRecording, StreamIdentity, StreamOutlets, WebViewer};
 use tomcom_devices::rrd::{self, RRD_NAME, RerunFileState};
@@ -19,16 +20,18 @@ use tomcom_devices::scene::{SceneInputs, SceneUpdate, SessionScene, TimedBars, f
 use tomcom_devices::stream::PORTS;
 use tomcom_devices::stream_head;
 use tomcom_devices::viewer::{self, ViewerAvailability};
+use tomcom_session::error_list::ListedError;
 use tomcom_session::files::file_error::{FileError, FileResult, read_bytes};
 use tomcom_session::files::overwrite;
 use tomcom_session::files::replace_file::Replacement;
 use tomcom_session::history::error_reasons::ExplainedError;
+use tomcom_session::history::false_beliefs::{FalseBeliefEnd, FalseBeliefsBefore};
 use tomcom_session::history::{event_words, signal_words, wording};
 use tomcom_session::log::video_file::{self, AttachedFilm};
-use tomcom_session::log::{LOG_NAME, LogReader, RecordingLock, RecordingWriteError, rater_codes};
+use tomcom_session::log::{LOG_NAME, LogReader, RecordingLock, RecordingWriteError, consensus_file, rater_codes};
 use tomcom_session::replay::{RecordingReplay, ReplayLandmark};
 use tomcom_session::wizard_log::signal_verdicts;
-use tomcom_session::{Session, TimestampedEvent};
+use tomcom_session::{Session, TimestampedEvent, apply};
 
 /// First network port that is tried for the web viewer.
 const WEB_PORT: u16 = 9090;
@@ -118,6 +121,23 @@ pub fn running(recordings: &[PathBuf]) -> FileResult<Vec<OngoingRecording>> {
         }
     }
     Ok(running)
+}
+
+/// The time on the trial's clock at the end of the longest of these recordings.
+///
+/// # Errors
+/// A recording cannot be read.
+pub fn length(recordings: &[PathBuf]) -> FileResult<SessionTime> {
+    let mut longest = SessionTime::ZERO;
+    for recording in recordings {
+        let mut log = LogReader::open(recording)?;
+        let mut session = log.session();
+        while let Some(line) = log.next_line()? {
+            apply(&mut session, &line.stamped).map_err(|error| log.refused(&line, error))?;
+        }
+        longest = longest.max(session.trial_clock(session.time));
+    }
+    Ok(longest)
 }
 
 /// Result of showing recordings in Rerun.
@@ -405,10 +425,12 @@ pub fn unshown_films(recordings: &[PathBuf]) -> FileResult<Vec<String>> {
 }
 
 /// An error, a signal, a note or a false belief of a recording, as the viewer shows it.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RecordedLandmark {
     pub kind: ReplayLandmark,
     pub words: String,
+    /// What the words tell, for programs: an object.
+    pub fields: Value,
     /// On the trial's clock.
     pub from: SessionTime,
     /// On the trial's clock: of an error, the human's next press; `None` if it lasts to the end of the recording.
@@ -425,34 +447,64 @@ pub fn landmarks(recording: &Path, kinds: &[ReplayLandmark]) -> FileResult<Vec<R
     let (follower, session) = (&replay.follower, replay.session());
     let kitchen = &session.kitchen;
     let mut found: Vec<RecordedLandmark> = Vec::new();
-    let mut add = |kind: ReplayLandmark, began: SessionTime, ended: Option<SessionTime>, words: String| {
-        let from = session.trial_clock_at(began);
-        found.push(RecordedLandmark { kind, words, from, until: ended.map(|ended| session.trial_clock_at(ended)) });
-    };
+    let clock_s = |time: SessionTime| session.trial_clock_at(time).as_secs_f64();
+    let mut add =
+        |kind: ReplayLandmark, began: SessionTime, ended: Option<SessionTime>, words: String, fields: Value| {
+            let (from, until) = (session.trial_clock_at(began), ended.map(|ended| session.trial_clock_at(ended)));
+            found.push(RecordedLandmark { kind, words, fields, from, until });
+        };
     if kinds.contains(&ReplayLandmark::Error) {
-        let codes =
-            rater_codes::read_all(replay.log().folder(), &CodableErrors::from_presses(kitchen, &follower.judged))?;
+        let (folder, codable) = (replay.log().folder(), CodableErrors::from_presses(kitchen, &follower.judged));
+        let codes = rater_codes::read_all(folder, &codable)?;
+        let shared = consensus_file::read(folder, &codable)?.map(|consensus| {
+            let none = RaterCodes::default();
+            let own = consensus.raters.each_ref().map(|rater| codes.get(rater).unwrap_or(&none));
+            (consensus.name(), consensus.current(own))
+        });
+        let codes: Vec<(String, RaterCodes)> = codes.into_iter().chain(shared).collect();
         let errors = follower.judged.iter().enumerate().filter(|(_, press)| press.verdict.error);
-        let explained = ExplainedError::among(session, &follower.judged);
-        for ((number, (nth, press)), error) in (1..).zip(errors).zip(explained) {
-            let coded = codes.iter().filter_map(|(rater, codes)| Some((rater, codes.0.get(&press.seq)?)));
-            let coded: String = coded.map(|(rater, code)| format!("; {rater}: {}", wording::code(code))).collect();
-            let told = error.told(follower.believed_wrong(press.time, press.before));
-            let words = format!("error {number}: {told}{coded}");
-            add(ReplayLandmark::Error, press.time, follower.judged_until(nth), words);
+        let explained = ExplainedError::among(session, &follower.judged).into_iter().zip(ListedError::all(follower));
+        for ((nth, press), (error, listed)) in errors.zip(explained) {
+            let believed = follower.believed_wrong(press.time);
+            let coded: Vec<(&String, &ErrorCauseCode)> =
+                codes.iter().filter_map(|(rater, codes)| Some((rater, codes.0.get(&press.seq)?))).collect();
+            let mut words =
+                format!("error {}: {}", listed.error, error.told(believed.and_then(FalseBeliefsBefore::told)));
+            words.extend(coded.iter().map(|&(rater, code)| format!("; {rater}: {}", wording::code(code))));
+            let mut fields = json!(listed);
+            fields["why"] = json!(error.why);
+            fields["cause"] = json!(error.cause);
+            fields["cost_presses"] = json!(press.verdict.excess);
+            fields["believed_wrong"] = json!(believed);
+            let code = |code: &ErrorCauseCode| json!({ "cause": code.kind(), "aspect": code.aspect() });
+            fields["codes"] = coded.iter().map(|&(rater, found)| (rater.clone(), code(found))).collect();
+            add(ReplayLandmark::Error, press.time, follower.judged_until(nth), words, fields);
         }
     }
     if kinds.contains(&ReplayLandmark::Signal) {
         let verdicts = signal_verdicts(follower);
         for (nth, shown) in follower.signals.shown.iter().enumerate() {
-            let told = signal_words::told(follower, verdicts.as_deref(), nth);
-            add(ReplayLandmark::Signal, shown.time, shown.ended, format!("signal {}: {told}", nth + 1));
+            let words = format!("signal {}: {}", nth + 1, signal_words::told(follower, verdicts.as_deref(), nth));
+            let fields = json!({
+                "number": nth + 1,
+                "event": shown.seq,
+                "time_s": clock_s(shown.time),
+                "by": shown.by,
+                "signal": shown.signal,
+                "location": shown.signal.target(),
+                "looked_at_s": shown.seen.map(clock_s),
+                "verdict": verdicts.as_ref().map(|verdicts| verdicts[nth].name()),
+                "reason": shown.reason,
+                "value": shown.worth,
+            });
+            add(ReplayLandmark::Signal, shown.time, shown.ended, words, fields);
         }
     }
     if kinds.contains(&ReplayLandmark::Marker) {
         let notes = session.timeline.iter().filter_map(|entry| Some((entry.time, event_words::note(&entry.what)?)));
-        for (number, (time, note)) in (1..).zip(notes) {
-            add(ReplayLandmark::Marker, time, Some(time), format!("note {number}: {}", printable(&note)));
+        for (number, (time, note)) in (1_u64..).zip(notes) {
+            let (words, fields) = (format!("note {number}: {}", printable(&note)), json!({ "number": number }));
+            add(ReplayLandmark::Marker, time, Some(time), words, fields);
         }
     }
     if kinds.contains(&ReplayLandmark::FalseBelief) {
@@ -460,9 +512,18 @@ pub fn landmarks(recording: &Path, kinds: &[ReplayLandmark]) -> FileResult<Vec<R
         let mut numbers = 1..;
         for held in follower.false_beliefs.all() {
             let number = held.lasts(session).then(|| numbers.next()).flatten();
-            let number = number.map_or_else(String::new, |number| format!(" {number}"));
+            let about = &kitchen.aspects[held.aspect.index()];
+            let fields = json!({
+                "number": number,
+                "aspect": about.name,
+                "believes": about.labels[held.thinks],
+                "truth": about.labels[held.truth],
+                "lasted_s": held.lasted_s(session),
+                "end": held.end.map(FalseBeliefEnd::words),
+            });
+            let number = number.map_or_else(String::new, |number: u64| format!(" {number}"));
             let (kind, name) = (ReplayLandmark::FalseBelief, ReplayLandmark::FalseBelief.name());
-            add(kind, held.began, held.ended, format!("{name}{number}: {}", held.whole(session)));
+            add(kind, held.began, held.ended, format!("{name}{number}: {}", held.whole(session)), fields);
         }
     }
     found.sort_by_key(|one| one.from);

@@ -12,8 +12,9 @@ use tomcom_core::base::text::{PathText, count};
 use tomcom_session::files::file_error::{FileError, FileResult, place_of, read_text};
 use tomcom_session::files::{KitchenWithSources, SessionSetup, in_language};
 use tomcom_session::plan::{
-    ParticipantProgress, PlanDifference, RecordingOutcome, Study, TrialAttempt, listed, orders,
+    ParticipantProgress, PlanDifference, PlanRecording, RecordingOutcome, Study, TrialAttempt, orders,
 };
+use tomcom_session::settings::ParticipantKind;
 use tomcom_session::study_arm::StudyArm;
 use tomcom_study::files::pool_file;
 use tomcom_study::frozen_plan::FrozenPlan;
@@ -68,7 +69,11 @@ impl StudyProgress {
             planned: participants.len(),
             finished: participants.iter().filter(|one| one.done() == one.steps.len()).count(),
             simulated,
-            remarks: remarks(study).into_iter().chain(uncounted(made.len(), simulated, session, out, frozen)).collect(),
+            remarks: remarks(study)
+                .into_iter()
+                .chain(rehearsed(&made))
+                .chain(uncounted(made.len(), simulated, session, out, frozen))
+                .collect(),
             participants,
         })
     }
@@ -80,6 +85,14 @@ fn remarks(study: &Study) -> Vec<String> {
     let consent = (language != "en")
         .then(|| format!("the consent's text stands in the plan: make sure that it is in \"{language}\""));
     study.remarks().into_iter().chain(consent).collect()
+}
+
+/// That recordings of rehearsals count as those of people.
+fn rehearsed(made: &[PlanRecording]) -> Option<String> {
+    let rehearsed = made.iter().filter(|made| made.kind == ParticipantKind::Simulated).count() as u64;
+    let are = count(rehearsed, "recording is", "recordings are");
+    let told = || format!("{are} of a simulated participant at the console, and count here as those of people do");
+    (rehearsed > 0).then(told)
 }
 
 /// Why recordings that somebody made may not show in the progress.
@@ -170,13 +183,18 @@ pub fn check_frozen(session: &Path, files: &SessionSetup, frozen: &Path) -> File
     // The error points to the first difference; the others are listed, whatever file they are in.
     let too = |others: &[PlanDifference], sources: &[(PathBuf, &String, &str)], texts: &[PlanDifference]| {
         let files = sources.iter().filter(|(_, now, kind)| *now != frozen_text(kind));
-        let listed = [others, texts].into_iter().filter(|some| !some.is_empty()).map(listed);
-        let all: Vec<String> = listed.chain(files.map(|(path, ..)| path.display().to_string())).collect();
-        if all.is_empty() { String::new() } else { format!("; changed, too: {}", all.join(", ")) }
+        let settings = others.iter().chain(texts).map(PlanDifference::to_string);
+        let all = settings.chain(files.map(|(path, ..)| path.display().to_string()));
+        all.map(|one| format!("\nchanged, too: {one}")).collect::<String>()
     };
     let wrong_at = |path: &Path, text: &str, place, found: &str, before: &str, others: String| {
-        let right = format!("{before}, as it was frozen in {}", frozen.display());
-        FileError::at(path, text, place, format!("{found}, changed since the plan was frozen"), right + &others)
+        let right = format!(
+            "{before}, as it was frozen in {}{others}\nrestore what was frozen, or freeze the changed plan in a new file: tomcom plan {} \
+             --freeze NEW",
+            frozen.display(),
+            session.display()
+        );
+        FileError::at(path, text, place, format!("{found}, changed since the plan was frozen"), right)
     };
     let changed = plan.differs_from(&study);
     if let [first, others @ ..] = &changed[..] {
@@ -303,8 +321,11 @@ fn attempts(progress: &ParticipantProgress) -> String {
         }
         for (index, attempt) in stand.recordings.iter().enumerate() {
             let open = if index + 1 < stand.recordings.len() { "not finished, repeated" } else { "open" };
+            let simulated = if attempt.simulated { ", with a simulated participant" } else { "" };
             let version = if attempt.other_version { ", recorded under another version of the plan" } else { "" };
-            let arm = attempt.other_arm.map_or(String::new(), |arm| format!(", in the condition {}", arm.title()));
+            let planned = stand.slot.condition.title();
+            let arm = attempt.other_arm.map(|arm| format!(", in the condition {} (planned: {planned})", arm.title()));
+            let arm = arm.unwrap_or_default();
             let recorded = attempt.recorded_as.as_ref();
             let corrected = recorded.map_or(String::new(), |code| format!(", recorded as {code}{arm}"));
             let how = match (&attempt.outcome, &attempt.waived, &attempt.excluded) {
@@ -313,7 +334,11 @@ fn attempts(progress: &ParticipantProgress) -> String {
                     let over = attempt.ended_where.split("; ").next().unwrap_or_default();
                     &format!("{over}, as the wizard ended it; it counts")
                 }
-                (RecordingOutcome::Complete, None, _) if attempt.other_version || recorded.is_some() => "done",
+                (RecordingOutcome::Complete, None, _)
+                    if attempt.simulated || attempt.other_version || recorded.is_some() =>
+                {
+                    "done"
+                }
                 (RecordingOutcome::Complete, None, _) => continue,
                 (RecordingOutcome::Open, _, Some(reason)) => &format!("{open}, excluded ({reason})"),
                 (RecordingOutcome::Open, _, None) => open,
@@ -321,7 +346,8 @@ fn attempts(progress: &ParticipantProgress) -> String {
                 (RecordingOutcome::Excluded { reason }, ..) => &format!("excluded ({reason})"),
                 (RecordingOutcome::Void { reason }, ..) => reason,
             };
-            lines += &format!("{} in {}: {how}{version}{corrected}\n", slot_name(progress, slot), attempt.recording);
+            let (name, recording) = (slot_name(progress, slot), &attempt.recording);
+            lines += &format!("{name} in {recording}: {how}{simulated}{version}{corrected}\n");
         }
     }
     lines

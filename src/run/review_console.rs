@@ -21,6 +21,7 @@ use crate::run::terminal::TerminalScreen;
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
 use tomcom_core::measures::raters::ErrorCauseCode;
+use tomcom_session::error_list::ListedError;
 use tomcom_session::history::wording;
 use tomcom_session::log::{LogEnding, RecordingLock, video_file};
 use tomcom_session::replay::ReplayLandmark;
@@ -247,7 +248,7 @@ impl Review {
         }
     }
 
-    /// Marks errors, signals, false beliefs and notes on the bar of the recording; for raters, errors only.
+    /// Marks errors, signals, false beliefs and notes on the bar of the recording; for raters, only the errors of their list.
     fn mark(&mut self) {
         let read = self.film.read_events();
         if self.marked == read {
@@ -256,13 +257,15 @@ impl Review {
         self.marked = read;
         // Where two marks meet, the later one of this list is seen.
         use ReplayLandmark::{Error, FalseBelief, Marker, Signal};
-        let all = [FalseBelief, Error, Signal, Marker];
-        let shown = if self.model.coding.is_some() { &[Error][..] } else { &all[..] };
         let session = self.film.replay.session();
-        let times = |&what: &ReplayLandmark| {
+        let times = |what: ReplayLandmark| {
             self.film.landmarks(what).into_iter().map(move |time| (session.trial_clock_at(time), what))
         };
-        let marks: Vec<(SessionTime, ReplayLandmark)> = shown.iter().flat_map(times).collect();
+        let listed = |error: &ListedError| (SessionTime::from_secs_f64(error.time_s), Error);
+        let marks: Vec<(SessionTime, ReplayLandmark)> = match &self.model.coding {
+            Some(coding) => coding.errors.iter().map(listed).collect(),
+            None => [FalseBelief, Error, Signal, Marker].into_iter().flat_map(times).collect(),
+        };
         self.playback(|playback| playback.marks = marks.into());
     }
 

@@ -15,7 +15,7 @@ use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::follower::SessionFollower;
 use tomcom_session::history::belief_track::{BeliefHistory, BeliefSnapshot};
 use tomcom_session::history::error_reasons::ExplainedError;
-use tomcom_session::history::false_beliefs::EstimatedFalseBelief;
+use tomcom_session::history::false_beliefs::{EstimatedFalseBelief, FalseBeliefsBefore};
 use tomcom_session::history::{event_words, signal_words};
 use tomcom_session::log::LogPlace;
 use tomcom_session::replay::RecordingReplay;
@@ -265,11 +265,12 @@ impl SeekableReplay {
 
     /// When the trial's clock first showed this time, as far as the recording was read; `None` if the trial was shorter.
     pub fn at_clock(&self, clock: SessionTime) -> Option<SessionTime> {
-        let session = self.replay.session();
+        let (session, end) = (self.replay.session(), self.trial_length());
         let later = |time: SessionTime, &(from, until): &(SessionTime, SessionTime)| {
             if from < time { time + (until - from) } else { time }
         };
-        (clock <= self.trial_length()).then(|| session.pauses.iter().fold(session.trial_start + clock, later))
+        let is_there = !clock.is_shown_after(end);
+        is_there.then(|| session.pauses.iter().fold(session.trial_start + clock.min(end), later))
     }
 
     /// Position after the events at the time of the trial's start; 0 in a recording without a trial.
@@ -455,7 +456,7 @@ impl SeekableReplay {
                 if self.is_blinded {
                     return Some(format!("{}: {}", error.press, error.why));
                 }
-                Some(error.told(self.replay.follower.believed_wrong(now, error.before)))
+                Some(error.told(self.replay.follower.believed_wrong(now).and_then(FalseBeliefsBefore::told)))
             }
             ReplayLandmark::Signal => {
                 let follower = &self.replay.follower;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use crate::apply::{ApplyError, apply};
 use crate::external::happenings::Happenings;
-use crate::history::false_beliefs::{self, EstimatedFalseBeliefs};
+use crate::history::false_beliefs::{self, EstimatedFalseBeliefs, FalseBeliefsBefore, HeldFalseBelief};
 use crate::probes::{ProbeEvent, ProbeSubject, StartedProbe};
 use crate::tracker::TrackerEvent;
 use crate::wizard_log::WizardLog;
@@ -14,7 +14,7 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::signal::SignalRepeatRule;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::{Agent, Kitchen, KitchenChange, Press, State};
+use tomcom_core::kitchen::{Agent, AspectId, Kitchen, KitchenChange, Press, State};
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::{ErrorAttributor, ErrorCause};
 use tomcom_core::measures::errors::PressJudge;
@@ -55,8 +55,8 @@ pub struct SessionFollower {
     pub estimated: Option<PressBeliefEstimate>,
     /// At the beginning of the last freeze probe.
     pub probed: Option<ProbedEstimate>,
-    /// What a simulated participant itself believed wrong that caused an error, in words, by the time of the press.
-    own_false_beliefs: BTreeMap<SessionTime, String>,
+    /// What was believed wrong before each error, by the time of the press.
+    believed_wrong: BTreeMap<SessionTime, FalseBeliefsBefore>,
     /// What the next question tells an external concept; `None` without one.
     pub(crate) happenings: Option<Happenings>,
 }
@@ -130,7 +130,7 @@ impl SessionFollower {
             estimates: true,
             estimated: None,
             probed: None,
-            own_false_beliefs: BTreeMap::new(),
+            believed_wrong: BTreeMap::new(),
             happenings,
         }
     }
@@ -208,6 +208,7 @@ impl SessionFollower {
         }
         self.remember(stamped);
         if let (Some(press), Some(belief), Some(evidence)) = (human_press, belief, self.filter.evidence()) {
+            self.estimated_wrong(stamped, &press, &belief);
             self.estimated = Some(PressBeliefEstimate { press: stamped.seq, state: press.before, belief, evidence });
         }
     }
@@ -298,12 +299,19 @@ impl SessionFollower {
         SessionFollower { estimates: false, ..self }
     }
 
-    /// What was believed wrong just before an error, in words: by a simulated participant itself, as far as that caused the
-    /// error, and by the estimate. `before`: the kitchen before the press.
-    pub fn believed_wrong(&self, press: SessionTime, before: State) -> Option<String> {
-        let estimated = self.false_beliefs.told_before(&self.session, press, before);
-        let told: Vec<String> = self.own_false_beliefs.get(&press).cloned().into_iter().chain(estimated).collect();
-        (!told.is_empty()).then(|| told.join("; "))
+    /// What was believed wrong just before the error at this time: by a simulated participant itself, and by the estimate.
+    pub fn believed_wrong(&self, error: SessionTime) -> Option<&FalseBeliefsBefore> {
+        self.believed_wrong.get(&error)
+    }
+
+    /// Of an error, what the estimate before the press has as believed wrong.
+    fn estimated_wrong(&mut self, stamped: &TimestampedEvent, press: &Press, belief: &DirichletBelief) {
+        let cause = self.judgement(stamped.seq).and_then(|(_, judged)| judged.cause);
+        let Some(found) = self.believed_wrong.get_mut(&stamped.time) else { return };
+        let about = false_beliefs::aspects_of(&self.session.kitchen, press, cause);
+        let since = |aspect| self.false_beliefs.before(aspect, stamped.time).map(|held| held.began);
+        let values = |aspect| belief.aspect(aspect).mean();
+        found.estimate = HeldFalseBelief::among(&self.session, press.before, &about, values, since);
     }
 
     fn human_pressed(&mut self, stamped: &TimestampedEvent, press: &Press) {
@@ -316,10 +324,21 @@ impl SessionFollower {
             let found = || self.attributor.cause(&kitchen, &mut self.cost, belief, press, number);
             told.or_else(|| self.finds_causes.then(found))
         });
-        if let (Some(cause), Some(belief)) = (cause, &belief) {
+        if let Some(cause) = cause {
             self.episodes.erred(&kitchen, cause);
-            let told = false_beliefs::told_by_participant(&self.session, press.before, belief, cause, &self.episodes);
-            self.own_false_beliefs.extend(told.map(|told| (stamped.time, told)));
+        }
+        if verdict.error {
+            let about = false_beliefs::aspects_of(&kitchen, press, cause);
+            let held =
+                |aspect: AspectId| self.episodes.all().find(|one| one.aspect == aspect && one.corrected.is_none());
+            let since = |aspect| held(aspect).map(|one| one.began).filter(|began| *began < stamped.time);
+            let own = |belief: &Belief| {
+                let values = |aspect| belief.distribution(aspect);
+                HeldFalseBelief::among(&self.session, press.before, &about, values, since)
+            };
+            let participant = belief.as_ref().map(own).unwrap_or_default();
+            let found = FalseBeliefsBefore { participant, estimate: Vec::new() };
+            self.believed_wrong.insert(stamped.time, found);
         }
         let belief_known = belief.is_some();
         let (seq, time, button, before) = (stamped.seq, stamped.time, press.button, press.before);

@@ -14,10 +14,10 @@ use crate::analysis::bids::recording_tables::{
     BidsRowCounts, LongTable, LongTableFacts, PressOutcome, RecordingTables,
 };
 use crate::files::bids_tree::BidsTree;
-use crate::gathered::GatheredRecordings;
+use crate::gathered::{GatheredRecordings, name};
 use crate::kept_cost::KeptCost;
 use crate::pass::reading;
-use crate::planned_trial::{ForeignRecording, RecordingCopy, left_out_in_words};
+use crate::planned_trial::{ForeignReason, ForeignRecording, RecordingCopy, left_out_in_words};
 use crate::standing;
 use tomcom_core::base::text::{PathText, count};
 use tomcom_core::kitchen::KitchenChange;
@@ -33,7 +33,8 @@ pub struct BidsSummary {
     pub folder: PathText,
     pub changed_codes: Vec<(String, String)>,
     pub copies: Vec<RecordingCopy>,
-    /// Recordings of no plan beside those of a plan, and simulated ones beside those of people, which are left out.
+    /// Recordings of no plan beside those of a plan, simulated ones beside those of people, and those that are still being
+    /// written, which are left out.
     pub foreign: Vec<ForeignRecording>,
     pub recordings: Vec<BidsRecording>,
     pub questionnaires: usize,
@@ -58,12 +59,27 @@ struct Planned {
 }
 
 /// Exports these recordings into a new folder. `with_words`: whether text that wizards and participants typed is
-/// exported, too. `done` is called after each recording. Errors: a recording cannot be read or is still being written,
+/// exported, too. `done` is called after each recording. Errors: a recording cannot be read, all are still being written,
 /// or the data set cannot be written.
 pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: impl Fn()) -> FileResult<BidsSummary> {
-    let GatheredRecordings { paths, copies, foreign, .. } = GatheredRecordings::find(recordings)?.without_foreign(&[]);
-    let whole =
-        paths.into_iter().map(|path| header(&path).map(|header| (path, header))).collect::<FileResult<Vec<_>>>()?;
+    let GatheredRecordings { paths, copies, mut foreign, .. } =
+        GatheredRecordings::find(recordings)?.without_foreign(&[]);
+    let mut whole = Vec::new();
+    for path in paths {
+        let log = LogReader::open(&path)?;
+        match log.ending() {
+            LogEnding::Running => {
+                foreign.push(ForeignRecording { reason: ForeignReason::Running, recording: name(&path) });
+            }
+            _ => whole.push((path, log.header)),
+        }
+    }
+    foreign.sort();
+    if let Some(running) = foreign.iter().find(|one| one.reason == ForeignReason::Running && whole.is_empty()) {
+        let remedy = "a recording whose session is over".to_string();
+        let found = "a recording that is still being written".to_string();
+        return Err(FileError::from_finding(Path::new(&running.recording), found, remedy));
+    }
     let labels = BidsLabelMap::from_names(whole.iter().map(|(_, header)| header.session.participant.code.as_str()));
     let planned = places(whole, &labels);
     let tree = BidsTree::create(folder)?;
@@ -94,16 +110,6 @@ pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: imp
         questionnaires: asked.len() / 2,
         words: with_words,
     })
-}
-
-/// Reads the header of a recording; refuses a recording that is still being written.
-fn header(recording: &Path) -> FileResult<LogHeader> {
-    let log = LogReader::open(recording)?;
-    if log.ending() == LogEnding::Running {
-        let remedy = "a recording whose session is over".to_string();
-        return Err(FileError::from_finding(recording, "a recording that is still being written".to_string(), remedy));
-    }
-    Ok(log.header)
 }
 
 /// Places of the recordings in the data set: by the participant's label, then by plan, date and name of the recording.

@@ -100,7 +100,7 @@ impl CodedRecording {
         let own = consensus.raters.each_ref().map(|rater| self.codes.get(rater).unwrap_or(&none));
         let [of, with] = consensus.raters.clone();
         let agreed = consensus.agreed() as u64;
-        let settled = consensus.current(own).0.len() as u64;
+        let shared = consensus.current(own).0.len() as u64;
         let missing = consensus.without_codes(own).map(str::to_string);
         let changed = if missing.is_some() { Vec::new() } else { consensus.changed(own) };
         let stale = changed.into_iter().map(|changed| ChangedRaterCode {
@@ -109,7 +109,8 @@ impl CodedRecording {
             rater: changed.rater,
         });
         let errors = self.codable.errors.len() as u64;
-        Some(ConsensusSummary { of, with, agreed, settled, open: errors - settled, missing, stale: stale.collect() })
+        let (settled, open) = (shared.saturating_sub(agreed), errors - shared);
+        Some(ConsensusSummary { of, with, agreed, settled, open, missing, stale: stale.collect() })
     }
 
     fn disagreements(&self, of: (&String, &RaterCodes), with: (&String, &RaterCodes)) -> Vec<RaterDisagreement> {
@@ -172,7 +173,7 @@ pub struct ConsensusSummary {
     pub of: String,
     pub with: String,
     pub agreed: u64,
-    /// Number of errors with a valid consensus code, including errors that both raters coded alike.
+    /// Number of errors with a valid consensus code, without those that both raters coded alike.
     pub settled: u64,
     pub open: u64,
     /// The rater of whom there are no codes any more; null if there are codes of both.
@@ -302,11 +303,8 @@ pub fn describe(figures: &InterRaterSummary) -> String {
 
 fn describe_consensus(found: &ConsensusSummary) -> String {
     let ConsensusSummary { of, with, agreed, settled, open, missing, stale } = found;
-    let decided = settled.saturating_sub(*agreed);
-    let mut text = format!(
-        "  consensus of {of} and {with} on errors: {agreed} agreed, {decided} settled, {open} \
-                            open\n"
-    );
+    let mut text =
+        format!("  consensus of {of} and {with} on errors: {agreed} agreed, {settled} settled, {open} open\n");
     if let Some(rater) = missing {
         text += &format!("  the consensus does not hold: there are no codes of {rater}\n");
     }

@@ -53,6 +53,9 @@ pub struct StudySummary {
     pub missing_trials: Vec<MissingTrials>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub corrections: Vec<CorrectedRecording>,
+    /// Of participants whose codes were corrected: conditions of trials that are not those of the plan, in words.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub other_orders: Vec<String>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub copies: Vec<RecordingCopy>,
     /// Recordings beside those of the study that are not analysed; absent if there are none.
@@ -198,6 +201,7 @@ impl StudySummary {
             robot: by_arm(&counting),
             preregistration: None,
             missing_trials: Vec::new(),
+            other_orders: Vec::new(),
             copies: Vec::new(),
             foreign: Vec::new(),
             corrections: Vec::new(),

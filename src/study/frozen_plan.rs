@@ -191,6 +191,8 @@ fn current_definitions() -> Vec<FrozenDefinition> {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RecordedPlan {
     pub participant: String,
+    /// The code in the log, if it was corrected.
+    pub recorded_as: Option<String>,
     /// Name and digest of the recording's study plan; `None` for a recording without a plan.
     pub plan: Option<(String, String)>,
     pub place: Option<PlaceInPlan>,
@@ -201,11 +203,19 @@ impl RecordedPlan {
         let spec = &header.session;
         let plan = spec.step.as_ref().map(|step| (step.plan.clone(), step.digest.clone()));
         let place = spec.step.as_ref().map(|step| PlaceInPlan {
-            participant: header.correction.is_none().then_some(step.participant),
+            participant: step.participant,
+            group: step.group.clone(),
             period: step.period,
             periods: step.periods,
+            arm: step.arm,
         });
-        RecordedPlan { participant: spec.participant.code.clone(), plan, place }
+        let recorded_as = header.correction.as_ref().map(|correction| correction.before.clone());
+        RecordedPlan { participant: spec.participant.code.clone(), recorded_as, plan, place }
+    }
+
+    /// The participant's code in the log, to whom the place in the plan belongs.
+    pub(crate) fn recorded_code(&self) -> &str {
+        self.recorded_as.as_ref().unwrap_or(&self.participant)
     }
 }
 
@@ -233,15 +243,20 @@ impl PlanVersions {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// Of the participant who has the code in the log, whose recording it may not be.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlaceInPlan {
-    /// From 0; `None` if the code was corrected, since the log has the index of another participant.
-    pub participant: Option<u32>,
+    /// From 0.
+    pub participant: u32,
+    /// Name of the starting group, with a letter for each trial.
+    pub group: String,
     /// Number of the trial, from 1; `None` for practice.
     pub period: Option<u32>,
     /// Number of counted trials per participant; 0 for a recording of the tutorial alone.
     pub periods: u32,
+    /// Condition of the trial.
+    pub arm: Option<StudyArm>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]

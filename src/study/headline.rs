@@ -18,6 +18,11 @@ pub const RATES_AND_RATIO: &str = "Rates pool all presses of a condition; the ra
                                    number of the trial accounted for), so it need not be their quotient. Its interval has the level at which \
                                    Holm's correction tests it: it is without 1 where the corrected p is below 0.05.";
 
+/// Least number of participants of a difference that is not shown, from which on its interval is told in sentences. With two
+/// conditions fewer leave at most three degrees of freedom: an interval of more than three standard errors to both sides,
+/// which reaches from almost nothing to a multiple.
+const FEWEST_FOR_INTERVAL: usize = 6;
+
 /// Largest number of trials that are named as left out.
 const MOST_NAMED: usize = 3;
 
@@ -39,7 +44,9 @@ pub fn primary_outcome(figures: &StudySummary) -> Vec<String> {
     let why = match conditions.len() {
         0 => return Vec::new(),
         1 => "one condition, so nothing is compared: no trial of another one counts",
-        _ => "not compared: too few participants have trials in several conditions",
+        _ => &format!(
+            "not compared: too few participants have trials in several conditions, and an interval needs {FEWEST_FOR_INTERVAL}"
+        ),
     };
     let out: Vec<String> = figures.left_out.iter().map(|one| format!("{} ({})", one.recording, one.reason)).collect();
     let out = match out.is_empty() {
@@ -111,12 +118,26 @@ fn answer(found: &StudyArmComparison) -> String {
     };
     let text = groups.into_iter().map(words).collect::<Vec<_>>().join("; ");
     let first = text.chars().next().map_or(0, char::len_utf8);
-    let doubted = found
-        .contrasts
-        .iter()
-        .find_map(|one| not_reliable(found, one))
-        .map_or(String::new(), |why| format!(" ({why})"));
+    let doubts = |one| is_of_few(found, one).then(|| too_few(found)).or_else(|| not_reliable(found, one));
+    let doubted = found.contrasts.iter().find_map(doubts).map_or(String::new(), |why| format!(" ({why})"));
     format!("{}{}{doubted}.", text[..first].to_uppercase(), &text[first..])
+}
+
+/// Whether no difference is shown by so few participants that it could hardly have been.
+fn is_of_few(found: &StudyArmComparison, one: &StudyArmContrast) -> bool {
+    found.participants < FEWEST_FOR_INTERVAL && one.verdict() != ContrastVerdict::Shown
+}
+
+fn too_few(found: &StudyArmComparison) -> String {
+    let participants = count(found.participants as u64, "participant is", "participants are");
+    format!("{participants} too few for a test and an interval; at least {FEWEST_FOR_INTERVAL} are needed")
+}
+
+/// Why the interval of a contrast stands in no sentence.
+pub(crate) fn no_interval(found: &StudyArmComparison, one: &StudyArmContrast) -> Option<String> {
+    let is_known = one.interval.iter().all(|end| end.is_finite());
+    let unknown = (!is_known).then(|| "too few trials for an interval".to_string());
+    is_of_few(found, one).then(|| too_few(found)).or(unknown)
 }
 
 /// That a ratio of the primary model is not reliable, to stand beside it; `None` where nothing speaks against it.
@@ -161,15 +182,15 @@ fn contrast(found: &StudyArmComparison, one: &StudyArmContrast) -> String {
     let ([low, high], contrasts) = (one.interval, found.contrasts.len());
     let (arm, against) = (one.arm.title(), one.against.title());
     let corrected = match contrasts {
-        1 => String::new(),
-        _ => format!(" ({} corrected for {contrasts} contrasts)", p_value(one.p_holm)),
+        2.. if !is_of_few(found, one) => format!(" ({} corrected for {contrasts} contrasts)", p_value(one.p_holm)),
+        _ => String::new(),
     };
-    let (in_percent, of_ratio) = match low.is_finite() && high.is_finite() {
-        true => (
+    let (in_percent, of_ratio) = match no_interval(found, one) {
+        None => (
             format!("{} interval {} to {}", level(one.level), fewer_or_more(low), fewer_or_more(high)),
             format!(", interval {low:.2} to {high:.2}"),
         ),
-        false => ("too few trials for an interval".to_string(), String::new()),
+        Some(why) => (why, String::new()),
     };
     let shown = match (one.verdict(), one.doubt) {
         (ContrastVerdict::Shown, None) => "",

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::figures::CorrectedRecording;
 use crate::frozen_plan::RecordedPlan;
 use tomcom_core::base::text::count;
+use tomcom_session::study_arm::StudyArm;
 
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct PlannedTrialKey {
@@ -25,7 +26,7 @@ impl PlannedTrialKey {
     /// `seed`: that of a simulated participant.
     pub fn new(recorded: &RecordedPlan, seed: Option<u64>) -> Option<PlannedTrialKey> {
         let (plan, _) = recorded.plan.clone()?;
-        let period = recorded.place?.period?;
+        let period = recorded.place.as_ref()?.period?;
         Some(PlannedTrialKey { plan, code: recorded.participant.clone(), seed, period })
     }
 
@@ -87,6 +88,8 @@ pub enum ForeignReason {
     NoPlan,
     /// Beside recordings of people.
     Simulated,
+    /// In an export; an analysis reads how far it is.
+    Running,
 }
 
 impl ForeignReason {
@@ -94,6 +97,7 @@ impl ForeignReason {
         match self {
             ForeignReason::NoPlan => "of no plan, beside those of a plan",
             ForeignReason::Simulated => "of a simulated participant, beside those of people",
+            ForeignReason::Running => "still being written",
         }
     }
 }
@@ -176,7 +180,7 @@ pub(crate) fn named<Name: AsRef<str>>(names: &[Name], most: usize) -> String {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct MissingTrials {
     pub plan: String,
-    /// Number of the participant in the plan, from 1; null if only recordings whose code was corrected are there.
+    /// Number of the participant in the plan, from 1; null if no recording was begun for the participant.
     pub participant: Option<u32>,
     /// Code of the participant; `None` if there is no recording of the participant and the codes are no numbers.
     pub code: Option<String>,
@@ -191,17 +195,59 @@ struct PlanRecordings<'a> {
     participants: BTreeMap<&'a str, (Option<u32>, BTreeSet<u32>)>,
 }
 
+/// A participant's trials in the conditions that the plan has for somebody else, since codes were corrected: which they
+/// were, and which were planned, in words. `recordings`: those of the study, each with whether its trial counts.
+pub fn other_orders<'a>(recordings: impl Iterator<Item = (&'a RecordedPlan, bool)>) -> Vec<String> {
+    // By version of the plan: the conditions by their letters in groups, the groups by code, and the trials by participant.
+    let (mut arms, mut groups) = (BTreeMap::new(), BTreeMap::new());
+    let mut done: BTreeMap<_, BTreeMap<u32, (&str, StudyArm)>> = BTreeMap::new();
+    for (recording, counts) in recordings {
+        let (Some(plan), Some(place)) = (&recording.plan, &recording.place) else { continue };
+        let (Some(period), Some(arm)) = (place.period, place.arm) else { continue };
+        let code = recording.recorded_code();
+        groups.insert((plan, code), place.group.as_str());
+        arms.extend(letter(&place.group, period).map(|letter| ((plan, letter), arm)));
+        if counts {
+            done.entry((plan, recording.participant.as_str())).or_default().insert(period, (code, arm));
+        }
+    }
+    let mut told = Vec::new();
+    for ((plan, own), trials) in done {
+        let others: BTreeSet<&str> = trials.values().map(|(code, _)| *code).filter(|code| *code != own).collect();
+        let planned = |period: u32| arms.get(&(plan, letter(groups.get(&(plan, own))?, period)?)).copied();
+        if others.is_empty() || trials.iter().all(|(period, (_, arm))| planned(*period) == Some(*arm)) {
+            continue;
+        }
+        let in_words = |arm: &dyn Fn(u32) -> Option<StudyArm>| {
+            let one = |period: &u32| format!("trial {period} {}", arm(*period).map_or("not known", StudyArm::title));
+            trials.keys().map(one).collect::<Vec<_>>().join(", ")
+        };
+        let others = others.into_iter().collect::<Vec<_>>().join(" and ");
+        let planned = match groups.contains_key(&(plan, own)) {
+            true => in_words(&planned),
+            false => "not known, since no recording was begun for this code".to_string(),
+        };
+        let done = in_words(&|period| trials.get(&period).map(|(_, arm)| *arm));
+        told.push(format!("{own}, recorded as {others}, had {done}; planned: {planned}"));
+    }
+    told
+}
+
+/// The letter of a trial's condition in the name of a starting group. `period`: from 1.
+fn letter(group: &str, period: u32) -> Option<char> {
+    group.chars().nth(period.checked_sub(1)? as usize)
+}
+
 /// The trials without a recording, by plan and participant. Recordings know their place in the plan, but not the
 /// number of its participants: participants after the last with a recording are not found.
 pub fn missing_trials(recordings: &[RecordedPlan]) -> Vec<MissingTrials> {
     let mut plans: BTreeMap<&str, PlanRecordings> = BTreeMap::new();
     for recording in recordings {
-        let (Some((plan, _)), Some(place)) = (&recording.plan, recording.place) else { continue };
+        let (Some((plan, _)), Some(place)) = (&recording.plan, &recording.place) else { continue };
         let found = plans.entry(plan).or_default();
         found.periods = found.periods.max(place.periods);
-        let (index, trials) = found.participants.entry(&recording.participant).or_default();
-        *index = index.or(place.participant);
-        trials.extend(place.period);
+        found.participants.entry(recording.recorded_code()).or_default().0 = Some(place.participant);
+        found.participants.entry(&recording.participant).or_default().1.extend(place.period);
     }
     plans.into_iter().flat_map(|(plan, found)| found.missing(plan)).collect()
 }
@@ -224,9 +270,15 @@ impl PlanRecordings<'_> {
         let are_numbers = known.iter().all(|(index, (code, _))| *code == numbered(*index));
         let in_order = (0..after_last).map(|index| match known.get(&index) {
             Some((code, trials)) => missing(Some(index), Some(code), trials),
-            None => missing(Some(index), are_numbers.then(|| numbered(index)).as_deref(), &none),
+            // All recordings of the participant can have been begun with another code.
+            None => {
+                let code = are_numbers.then(|| numbered(index));
+                let there = code.as_deref().and_then(|code| self.participants.get(code));
+                missing(Some(index), code.as_deref(), there.map_or(&none, |(_, trials)| trials))
+            }
         });
-        let others = self.participants.iter().filter(|(_, (index, _))| index.is_none());
+        let is_in_order = |code: &str| are_numbers && (0..after_last).any(|index| numbered(index) == code);
+        let others = self.participants.iter().filter(|(code, (index, _))| index.is_none() && !is_in_order(code));
         let others = others.map(|(code, (_, trials))| missing(None, Some(code), trials));
         in_order.chain(others).filter(|missing| !missing.trials.is_empty()).collect()
     }

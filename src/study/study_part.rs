@@ -29,7 +29,7 @@ use crate::trial_statistics::{TrialDetails, TrialStatistics};
 use tomcom_session::header::{CodeCorrection, RecordedFile};
 use tomcom_session::plan::PlanPosition;
 
-pub(crate) const PART_FORMAT: u32 = 7;
+pub(crate) const PART_FORMAT: u32 = 8;
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

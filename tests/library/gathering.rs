@@ -416,6 +416,15 @@ fn a_recording_that_is_still_made_is_running_and_not_cut() {
     fs::write(recording.join(LOG_NAME), half.join("\n") + "\n").expect("cut");
     let lock = RecordingLock::take(&recording).expect("a lock");
     assert_eq!(left_out(&recording).expect("readable").as_deref(), Some("running: its trial is not over"));
+    // An export has what is over, and names what is not.
+    let over = record(&root.join("P02-1"), &log, |header| header["session"]["participant"]["code"] = json!("P02"));
+    let export = |paths: &[PathBuf]| bids_export::export(paths, &root.join("bids"), false, || ());
+    let told = export(std::slice::from_ref(&recording)).expect_err("nothing is over").to_string();
+    assert!(told.contains("P01-1: found a recording that is still being written"), "{told}");
+    let summary = export(&[recording.clone(), over]).expect("exported");
+    assert_eq!(summary.recordings.len(), 1);
+    let told = bids_export::describe(&summary);
+    assert!(told.contains("1 recording is still being written, and left out: P01-1\n"), "{told}");
     drop(lock);
     assert_eq!(left_out(&recording).expect("readable").as_deref(), Some("cut before the trial's end"));
     // What counts is the trial: only the session's end is missing.

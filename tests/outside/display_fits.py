@@ -49,6 +49,13 @@ MEASURE = """([states, DISTANCE_M, NEAR_EM]) => Object.entries(states).map(([nam
     const lines = Math.max(1, Math.round((bottom - top) / size / 1.1)), air = Math.max(0, ((bottom - top) - lines * size) / 2);
     return { made, said: made.textContent, left, right, top: top + air, bottom: bottom - air };
   });
+  // No word in Latin letters is broken.
+  for (const { made } of texts) for (const node of [...made.childNodes].filter(({ nodeType }) => nodeType === 3)) for (const { 0: word, index } of node.data.matchAll(/\\p{Script=Latin}+/gu)) {
+    const range = document.createRange();
+    range.setStart(node, index);
+    range.setEnd(node, index + word.length);
+    if (new Set([...range.getClientRects()].map(({ top }) => Math.round(top))).size > 1) found.push(`"${word}" is broken`);
+  }
   const HOLDERS = ".pill, .spot.order, .recipe, .card, .why, .zone, .key, .toast, button, li";
   for (const text of texts) {
     const { made, said } = text, holder = made.closest(HOLDERS);
@@ -106,7 +113,7 @@ MEASURE = """([states, DISTANCE_M, NEAR_EM]) => Object.entries(states).map(([nam
   const robots = [...document.querySelectorAll(".gripper"), ...(stageMade.classList.contains("upright") ? [] : [theirs])].filter(isSeen);
   for (const why of [...document.querySelectorAll(".why")].filter((made) => isSeen(made) && made.textContent)) {
     for (const made of [...solid.filter((one) => !one.matches(".flash")), ...robots]) if (meets(box(why), box(made))) found.push(`"${why.textContent}" hides ${made.className} ${made.textContent || made.parentNode.className}`);
-    for (const text of texts.filter(({ made }) => !over(made))) if (meets(box(why), text)) found.push(`"${why.textContent}" hides "${text.said}"`);
+    for (const text of texts.filter(({ made }) => (lesson ? !why.contains(made) : !over(made)))) if (meets(box(why), text)) found.push(`"${why.textContent}" hides "${text.said}"`);
   }
   // It stands at what was pressed.
   const press = sight.presses[0], line = document.querySelector(".why.says");
@@ -197,7 +204,7 @@ def too_small(size, language, measured):
 
 
 def lines_stay(page, every):
-    """Reasons that stay when what they are about is over, or where a recipe opens."""
+    """Reasons that stay when what they are about is over, or where a recipe opens; and an end that is told twice."""
     recipe = next(sight["signal"] for name, sight in every.items() if name.startswith("recipe of"))
     boxes = "['.why.says', '.recipe.open'].map((name) => document.querySelector(name).getBoundingClientRect())"
     reasons = {name: sight for name, sight in every.items() if name.startswith("no effect")}
@@ -213,16 +220,36 @@ def lines_stay(page, every):
         show(page, every[name])
         if page.ask("Boolean(document.querySelector('.why.says'))"):
             yield f"a reason is there still: {name}"
+    show(page, every["thanks"])
+    page.ask("Stage.mark({ ended: true })")
+    if page.ask("Boolean(document.querySelector('.toast.open'))"):
+        yield "the last page says twice for whom to wait"
+    page.ask("Stage.mark({ ended: false })")
 
+
+# So much of the outlines of raw or cooked shellfish, which are seen beside one another, may be the same.
+SHELLFISH, MOST_ALIKE = [("shrimp raw", "crab raw"), ("shrimp cooked", "crab cooked")], 0.6
+OUTLINES = """async (names) => {
+  const inked = async (name) => {
+    const image = new Image(), pen = new OffscreenCanvas(100, 100).getContext("2d");
+    image.src = `data:image/svg+xml,${encodeURIComponent(Art.item(Stage.scene(), name).replace("<svg", '<svg xmlns="http://www.w3.org/2000/svg" width="100" height="100"'))}`;
+    await image.decode();
+    pen.drawImage(image, 0, 0);
+    return pen.getImageData(0, 0, 100, 100).data.filter((_, at) => at % 4 === 3).map((alpha) => alpha > 128);
+  };
+  const [one, other] = [await inked(names[0]), await inked(names[1])];
+  return one.filter((ink, at) => ink && other[at]).length / one.filter((ink, at) => ink || other[at]).length;
+}"""
 
 # Items and dishes that look alike, and are told apart without their colours.
 TOLD_APART = (("item", "shrimp cut", "crab cut"), ("dish", "shrimp nigiri", "salmon nigiri"), ("dish", "crab maki", "salmon maki"))
 
 
 def drawn_alike(page):
-    """Pairs of these that differ in nothing but colours."""
+    """Pairs of these that differ in nothing but colours, and shellfish whose outlines are nearly the same."""
     shapes = lambda kind, name: re.sub("#[0-9a-f]{6}", "", page.ask(f"Art.{kind}(Stage.scene(), {json.dumps(name)})"))
-    return [f"{one} and {other} differ in colours alone" for kind, one, other in TOLD_APART if shapes(kind, one) == shapes(kind, other)]
+    outlines = [f"{one} and {other} have nearly one outline" for one, other in SHELLFISH if page.page.evaluate(OUTLINES, [one, other]) > MOST_ALIKE]
+    return outlines + [f"{one} and {other} differ in colours alone" for kind, one, other in TOLD_APART if shapes(kind, one) == shapes(kind, other)]
 
 
 def words_in(text):

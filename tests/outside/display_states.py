@@ -241,13 +241,18 @@ def states(scene, kitchen):
         made["questionnaire" if name == "scale" else f"questionnaire: {name}"] = sight("questionnaire", question={**question, "form": form, "answer": answer})
     made["questionnaire: left out"] = sight("questionnaire", question={**question, "form": forms()["choice"][0], "skipped": True})
     made["answered"] = sight("answered")
+    low, high = {"de": ("überhaupt nicht", "außerordentlich")}.get(scene["language"], ("not at all", "extraordinarily"))
+    five = {"kind": "scale", "points": 5, "low": low, "high": high}
     given = [{"item": f"i{number}", "text": f"The signals of this trial helped in part {number}.", "answer": str(number % 7 + 1) if number != 5 else None,
-              "form": (forms()["scale"], forms()["slider"], forms()["text"])[number % 3][0], "point": (number % 7 + 1 if number % 3 == 0 else 7 * number) if number != 5 and number % 3 < 2 else None} for number in range(1, 13)]
+              "form": (five if number == 3 else forms()["scale"][0], forms()["slider"][0], forms()["text"][0])[number % 3], "point": (number % 7 + 1 if number % 3 == 0 else 7 * number) if number != 5 and number % 3 < 2 else None} for number in range(1, 13)]
     made["answers"] = sight("questionnaire", question={**question, "item": None, "form": None, "given": given, "text": "Thank you. Are your answers as you meant them?"})
     for name, page in tutorial_pages(scene, dishes).items():
         made[f"tutorial: {name}"] = sight("tutorial", tutorial={**TUTORIAL_PAGE, "step": name, **page})
     for name, (page, signal) in tutorial_texts(scene, kitchen).items():
         made[f"tutorial: {name}"] = sight("tutorial", signal=signal, tutorial={**TUTORIAL_PAGE, "step": name, **page})
+        if page["presses"]:
+            press = {"number": 1, "at": {"location": orders[-1]}, "effective": False, "why": {"reason": "not_served", "about": orders[-1]}}
+            made[f"tutorial: no effect at {name}"] = {**made[f"tutorial: {name}"], "presses": [press, None]}
     for name, page in probe_pages(scene, kitchen, dishes).items():
         made[f"probe: {name}"] = sight("probe", probe=page, contents=[])
     return made

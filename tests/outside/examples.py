@@ -135,6 +135,8 @@ def main(tomcom, folder):
     compare(figures(run(python, "examples/read_recording.py", continued)), expected(recordings[1]), continued)
     tables = run(python, "examples/read_tables.py", folder / "study")
     assert "paired_difference: " in tables and "cause " in tables, tables
+    for script in ["read_recording.py", "read_tables.py"]:
+        assert f"{script} sessions/" in run(python, f"examples/{script}", code=1), script
     rates, presses = {}, 0
     with open(folder / "study/trials.csv", newline="", encoding="utf-8") as trials:
         for row in csv.DictReader(trials):

@@ -132,6 +132,7 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         item("consent")
         keyboard.press("Delete")
         page.wait_for("document.querySelector('.declines').classList.contains('chosen')")
+        assert page.ask("document.querySelector('.hint.told').textContent === Stage.scene().words.declined")
         assert not list((folder / "recordings").glob("*/")), "recorded without consent"
         keyboard.down("Enter")
         item("age")
@@ -242,9 +243,9 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         assert [sign(made) for made in (".turns .back", ".turns .skip")] == ["←", "0"]
         pictures("scale")
         # What cannot be chosen, and going on without an answer, is told.
-        for key, said in (("9", "nothing"), ("Enter", "tutorial first question")):
+        for key, said, more in (("9", "number range", " 1 – 5"), ("x", "nothing", ""), ("Enter", "tutorial first question", "")):
             keyboard.press(key)
-            page.wait_for(f"document.querySelector('.why.says')?.textContent === Stage.scene().words['{said}']")
+            page.wait_for(f"document.querySelector('.why.says')?.textContent === Stage.scene().words['{said}'] + '{more}'")
         keyboard.press("3")
         keyboard.press("Enter")
         item("robots")

@@ -63,7 +63,7 @@ def main():
                 assert time.monotonic() < end, f"the viewer stands at {there} s, not at {at_s} s"
                 time.sleep(0.5)
                 now = page.evaluate(TIME)
-                there = None if now is None else round(now / 1e9, 3)
+                there = None if now is None else now // 1e6 / 1e3
             print(f"  the viewer in the browser stands at {there} s")
             # The page says so until all of the recording is there.
             page.wait_for_selector("#loading", state="detached", timeout=1000 * PATIENCE_S)

@@ -144,7 +144,7 @@ fn forgetting_asks_first_and_a_wizards_code_is_that_of_the_training() {
     let told = ended(lab.forget(&["P01"]), 2, &["seed1-P01-1 (recording)", "nothing was deleted", "--yes"]);
     assert!(told.contains("    events.jsonl, session.toml\n"), "every file is listed: {told}");
     assert_eq!(lab.files(), before);
-    ended(lab.forget(&["P01", "--yes"]), 0, &[]);
+    ended(lab.forget(&["P01", "--yes"]), 0, &["the plan paper still asks for P01: leave the code in the plan"]);
     assert!(!is_there("seed1-P01-1") && !is_there("seed1-P01-2") && !is_there("training/W1-2.json"));
     let left = lab.text("training/W1-1.json");
     assert!(left.contains("seed9-S001") && !left.contains("P01"), "what was trained on others stays: {left}");

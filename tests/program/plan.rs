@@ -237,6 +237,8 @@ fn check_excluded_trial_is_repeated(terminal: &Terminal, session: &str, out: &st
     // The terminal's width breaks the line.
     let words = told.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(words.contains(&again), "{told}");
+    assert!(words.contains("of a simulated participant at the console, and count here as those of"), "{told}");
+    assert!(words.contains("), with a simulated participant"), "{told}");
     assert!(told.contains("1 of 2 participants have done everything (1 of them with an excluded trial)"), "{told}");
     // Its recordings are of a simulated participant.
     terminal.run(&["operate", session, "--code", "A1", "--out", out, "--participant", "keyboard", "--gaze", "none"]);

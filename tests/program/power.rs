@@ -128,6 +128,10 @@ fn a_plan_is_frozen_once_and_the_study_says_whether_it_is_that_one() {
     let others = at("others");
     done(&["simulate", &plan, "--trials", "2", "--out", &others]);
     let text = done(&["study", &others, "--skip", "concepts,events", "--frozen", &file]);
+    // Below title and first sentence, before everything else.
+    assert!(text.lines().nth(2).is_some_and(|line| line.starts_with("Not as preregistered: ")), "{text}");
+    let report = fs::read_to_string(Path::new(&others).join("study/report.html")).expect("a report");
+    assert!(report.find("Not as preregistered") < report.find("class=\"lead\""), "{report}");
     assert!(text.contains("which changed since: trial.presses from 40 to 41. "), "{text}");
     let part = at("part.jsonl");
     done(&["study", &others, "--skip", "concepts,events", "--shard", "1/1", "--out", &part]);

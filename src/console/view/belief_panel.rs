@@ -9,7 +9,7 @@ use super::regions::PanelAreas;
 use super::theme::TextRole;
 use super::timeline::ticks;
 use crate::console::beliefs::{BeliefCorrectness, EstimatedBelief, are_by_cost, name, percent, visibility};
-use crate::console::console_model::ConsoleModel;
+use crate::console::console_model::{ConsoleModel, Playback};
 use crate::console::mouse::ClickAction;
 use crate::console::panels::Panel as PanelName;
 use crate::console::text_columns::{fit, width, wrap};
@@ -20,6 +20,7 @@ use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_session::Session;
 use tomcom_session::history::belief_track::{self, BeliefSnapshot, SHOWN_S};
 use tomcom_session::history::wording;
+use tomcom_session::replay::ReplayLandmark;
 use tomcom_session::settings::WizardVisibility;
 
 /// Least width, in columns, of a panel that shows each belief in one line.
@@ -49,6 +50,8 @@ struct Panel<'a> {
     beliefs: &'a [EstimatedBelief],
     /// Number of false and unsure beliefs that are scrolled away.
     from: usize,
+    /// Whether a replay stands at an error: its text has the beliefs before the press.
+    is_after_error: bool,
 }
 
 pub fn draw(
@@ -65,7 +68,9 @@ pub fn draw(
     let moments = model.belief.until(model.now);
     let told = believed.iter().filter(|belief| belief.standing != BeliefCorrectness::Right).count();
     let from = model.beliefs_from.min(told.saturating_sub(1));
-    let panel = Panel { session, now: model.now, moments, beliefs: believed, from };
+    let stands_at = model.playback.as_ref().and_then(Playback::stands_at);
+    let is_after_error = stands_at.is_some_and(|(what, _)| what == Some(ReplayLandmark::Error));
+    let panel = Panel { session, now: model.now, moments, beliefs: believed, from, is_after_error };
     if area.height < FRAMED {
         return panel.lines(brush, area);
     }
@@ -91,6 +96,8 @@ impl Panel<'_> {
         let loss = GazeLoss::now(self.session, self.now).filter(|_| !self.beliefs.is_empty());
         match self.of_standing(BeliefCorrectness::False).count() {
             _ if self.from > 0 => format!("{} above", self.from),
+            0 if self.is_after_error => "after the press".to_string(),
+            number if self.is_after_error => format!("{number} false, after the press"),
             _ if let Some(loss) = &loss => loss.words(self.now),
             0 => "estimated, not known".to_string(),
             number if are_by_cost(self.session) => format!("{number} false, costliest first"),

@@ -275,6 +275,8 @@ fn input_line(brush: &mut Painter, screen: Rect, text: &TextInput, (title, remar
 
 /// Largest size of a list: columns and rows.
 const MOST: (u16, u16) = (72, 26);
+/// Largest width of a list with a replay's events, whose words are long.
+const MOST_EVENTS: u16 = 112;
 /// Rows around a list: frame, search line, separator, key hints.
 const AROUND: u16 = 6;
 /// Text that says how the entries of a list are filtered.
@@ -304,6 +306,7 @@ struct ListPage<'a> {
     selects: &'a str,
     space: &'a str,
     takes: &'a str,
+    most_columns: u16,
 }
 
 pub fn draw_answers(brush: &mut Painter, screen: Rect, session: &Session, picker: &Picker) {
@@ -331,6 +334,7 @@ pub fn draw_answers(brush: &mut Painter, screen: Rect, session: &Session, picker
         selects: if is_filtered { "up/down" } else { &digits },
         space: if takes_words && is_filtered { "space types a space" } else { STOPS },
         takes: if takes_words { "choose; words can follow" } else { "choose" },
+        most_columns: MOST.0,
     }
     .draw(brush, screen);
 }
@@ -368,14 +372,15 @@ pub fn draw_palette(brush: &mut Painter, screen: Rect, session: &Session, model:
     let title = "All actions".to_string();
     let told = model.playback.as_ref().map_or(0, |playback| playback.told.len());
     let (all, none) = (all.len() + told, if told > 0 { "no such command or event" } else { "no such command" });
-    ListPage { title, cursor, rows, all, none, types, selects: "up/down", space, takes }.draw(brush, screen);
+    let (selects, most_columns) = ("up/down", if told > 0 { MOST_EVENTS } else { MOST.0 });
+    ListPage { title, cursor, rows, all, none, types, selects, space, takes, most_columns }.draw(brush, screen);
 }
 
 impl ListPage<'_> {
     fn draw(&self, brush: &mut Painter, screen: Rect) {
         // The height of the list stays the same while the filter changes.
         let rows = self.all.min(usize::from(MOST.1)) as u16 + AROUND;
-        let size = (MOST.0.min(screen.width), rows.min(MOST.1).min(screen.height));
+        let size = (self.most_columns.min(screen.width), rows.min(MOST.1).min(screen.height));
         let inside = open(brush, screen, size, &self.title, self.space);
         let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
         let typed = format!("{}_", self.cursor.filter);

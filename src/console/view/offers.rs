@@ -23,6 +23,7 @@ use tomcom_core::communication::offer::TAKEN_AFTER;
 use tomcom_core::communication::recommendation::{Recommendation, SignalOption, SignalReason};
 use tomcom_core::communication::{Sender, Signal, SignalKind};
 use tomcom_core::kitchen::{Agent, LocationId};
+use tomcom_core::measures::sequences::THINKS;
 use tomcom_session::admit::may_send;
 use tomcom_session::external::MindRole;
 use tomcom_session::history::{belief_track, wording};
@@ -132,8 +133,7 @@ impl ShownOffer<'_> {
             let since = belief_track::wrong_since(model.belief.until(opened), aspect.index())?;
             Some(session.trial_clock_at(opened) - session.trial_clock_at(since))
         });
-        let thinks = if reason.p_believes >= 0.5 { "thinks" } else { "may think" };
-        let mut said = vec![format!("{thinks} {believes}, {truth}")];
+        let mut said = vec![format!("{} {believes}, {truth}", wording::thinks(reason.p_believes))];
         said.extend(self.replaces(session));
         let p = percent(reason.p_believes);
         said.push(match since {
@@ -234,7 +234,10 @@ fn why_no_offer(session: &Session, model: &ConsoleModel, believed: &[EstimatedBe
     if session.spec.trial.condition == Condition::Assistant {
         let why = session.shown.as_ref().filter(|_| may_see).and_then(|shown| {
             let reason = shown.reason.as_ref().map(|reason| wording::reason(&session.kitchen, reason));
-            let reason = reason.map(|reason| format!("thought {}, is {}", reason.believes, reason.truth));
+            let reason = reason.map(|reason| {
+                let thought = if reason.p_believes < THINKS { "may have thought" } else { "thought" };
+                format!("{thought} {}, is {}", reason.believes, reason.truth)
+            });
             let why = reason.or_else(|| shown.words.as_deref().map(|words| printable(words).into_owned()))?;
             Some(format!("The assistant's {}: {why}", wording::signal(&shown.signal)))
         });

@@ -20,12 +20,16 @@ impl SessionTime {
         SessionTime((seconds.max(0.0) * 1e9).round() as u64)
     }
 
-    /// A time that is written as clocks show it, `1:34`, or in seconds, `94.6`; `None` for other text.
+    /// A time that is written as clocks show it, `1:34`, or in seconds, `94.6`; `None` for other text. It is the last one that
+    /// is shown so, since what is smaller is left out: every event of that time is before it.
     pub fn from_clock(text: &str) -> Option<Self> {
         let (minutes, seconds) = text.split_once(':').unwrap_or(("0", text));
         let (minutes, seconds): (u32, f64) = (minutes.parse().ok()?, seconds.parse().ok()?);
         let most = if text.contains(':') { 60.0 } else { f64::INFINITY };
-        (0.0..most).contains(&seconds).then(|| SessionTime::from_secs_f64(f64::from(minutes) * 60.0 + seconds))
+        let decimals = text.split_once('.').map_or(0, |(_, decimals)| decimals.len() as u32);
+        let left_out = SessionTime((1_000_000_000 / 10_u64.saturating_pow(decimals)).saturating_sub(1));
+        let begins = SessionTime::from_secs_f64(f64::from(minutes) * 60.0 + seconds);
+        (0.0..most).contains(&seconds).then_some(begins + left_out)
     }
 
     /// Seconds since the session began.
@@ -36,6 +40,11 @@ impl SessionTime {
     /// Whole milliseconds since the session began. As on every clock here, what is smaller is left out.
     pub fn ms(self) -> u64 {
         self.0 / 1_000_000
+    }
+
+    /// Whether a clock in whole seconds shows a later time than at `end`.
+    pub fn is_shown_after(self, end: SessionTime) -> bool {
+        self.ms() / 1000 > end.ms() / 1000
     }
 
     /// To the tenth of a second: `6:42.3`.

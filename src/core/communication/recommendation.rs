@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::signal::Signal;
 use crate::base::time::SessionTime;
 use crate::kitchen::{AspectId, Kitchen, State};
+use crate::measures::sequences::THINKS;
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::rounded;
 
@@ -135,7 +136,7 @@ impl SignalReason {
         })
     }
 
-    /// The false belief in words: "takes order 1 for tuna nigiri (0.83)"; "may take" if its probability is below 0.5.
+    /// The false belief in words: "takes order 1 for tuna nigiri (0.83)"; "may take" if its probability is below [`THINKS`].
     pub fn taken(&self) -> String {
         self.taken_with("")
     }
@@ -143,7 +144,7 @@ impl SignalReason {
     /// `named`: what stands before the probability.
     fn taken_with(&self, named: &str) -> String {
         let SignalReason { aspect, believes, p_believes, .. } = self;
-        let takes = if *p_believes < 0.5 { "may take" } else { "takes" };
+        let takes = if *p_believes < THINKS { "may take" } else { "takes" };
         format!("{takes} {} for {} ({named}{p_believes:.2})", aspect.replace('_', " "), phrase(believes))
     }
 

@@ -22,6 +22,9 @@ use crate::mind::belief::Belief;
 pub(crate) const MAX_APART: u32 = 3;
 /// A belief is false if its P(truth) is below this value.
 pub const FALSE_BELOW: f64 = 0.5;
+/// A value is what somebody thinks if the belief gives it at least this probability; of a false belief without such a
+/// value they are unsure.
+pub const THINKS: f64 = 0.5;
 
 /// An error sequence: related errors with few correct presses between them.
 #[derive(Clone, Debug, PartialEq)]

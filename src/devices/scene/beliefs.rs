@@ -7,12 +7,12 @@ use super::entity_content::{
 use super::happenings::{self, JudgedPressShown};
 use super::{SceneInputs, SceneUpdate, moment_on_clock};
 use tomcom_core::base::time::SessionTime;
-use tomcom_core::kitchen::{Agent, AspectId, Kitchen, State, StateAspect};
+use tomcom_core::kitchen::{Agent, AspectId, Kitchen, StateAspect};
 use tomcom_core::measures::sequences::FALSE_BELOW;
+use tomcom_core::mind::RecordedBelief;
 use tomcom_core::mind::dirichlet::DirichletBelief;
-use tomcom_core::mind::{RecordedBelief, RecordedEstimate};
 use tomcom_session::follower::SessionFollower;
-use tomcom_session::history::false_beliefs::EstimatedFalseBelief;
+use tomcom_session::history::false_beliefs::{EstimatedFalseBelief, HeldFalseBelief};
 use tomcom_session::history::wording;
 use tomcom_session::{Event, Session, TimelineEntry, TimelineEvent, TimestampedEvent};
 
@@ -35,8 +35,6 @@ pub const WRONG_BELIEFS: &str = "wrong_belief/";
 #[derive(Clone, Copy)]
 struct Held {
     aspect: usize,
-    /// Index of the value that is most probably believed.
-    thinks: usize,
     p_truth: f64,
 }
 
@@ -59,14 +57,6 @@ pub struct BeliefScene {
     curves: Vec<BeliefCurve>,
     /// Past rows of curves that have just begun.
     pub begun: Vec<SceneUpdate>,
-    /// When the simulated participant's beliefs were told last.
-    own_at: SessionTime,
-    /// For each state aspect, what the simulated participant believes wrong, and the last time at which it did not.
-    own_since: Vec<Option<(usize, SessionTime)>>,
-    /// What the simulated participant believes wrong before its next press, in words.
-    own: String,
-    /// State of the kitchen before the last press of the human.
-    before: Option<State>,
     /// Parts of the page: the last press of the human with the false beliefs before it, the signal, what the assistant
     /// advises, and the estimate after all events so far.
     press: String,
@@ -126,18 +116,23 @@ impl BeliefScene {
     ) -> Vec<EntityUpdate> {
         let (mut rows, follower) = (Vec::new(), inputs.follower);
         for entry in new {
-            if let TimelineEvent::Press { agent, before, .. } = entry.what {
+            if let TimelineEvent::Press { agent, .. } = entry.what {
                 if agent == Agent::Human {
-                    rows.extend(self.pressed(session, entry, pressed));
-                    self.before = Some(before);
+                    rows.extend(self.pressed(session, entry, pressed, follower));
                 }
                 // The estimate after the press is shown at the press's time.
                 self.tick = None;
             }
         }
         match &stamped.event {
-            Event::ParticipantBelieves(witness) => rows.extend(self.truly(session, witness)),
-            Event::BeliefEstimated(witness) => rows.extend(self.before_press(session, stamped.seq, witness, follower)),
+            Event::ParticipantBelieves(witness) => rows.extend(truly(&session.kitchen, witness)),
+            Event::BeliefEstimated(witness) => {
+                // What was shown at the press's time so far is before it.
+                self.tick = None;
+                let told = witness.aspects.iter().enumerate();
+                let held: Vec<Held> = told.map(|(aspect, told)| Held { aspect, p_truth: told.p_truth }).collect();
+                rows.extend(self.drawn(session, stamped.seq, &held, follower));
+            }
             _ => {}
         }
         let due = inputs.belief.filter(|_| self.is_due(stamped.time));
@@ -162,12 +157,12 @@ impl BeliefScene {
         session: &Session,
         entry: &TimelineEntry,
         judged: Option<JudgedPressShown<'_>>,
+        follower: &SessionFollower,
     ) -> Option<EntityUpdate> {
         let at = in_both_clocks(session.trial_clock(entry.time));
         let error = judged.filter(|judged| judged.press.verdict.error);
         let (_, pressed) = happenings::told(session, entry, error.is_some());
         let was_error = std::mem::replace(&mut self.is_error, error.is_some());
-        let own = std::mem::take(&mut self.own);
         let Some(error) = error else {
             let verdict = match judged {
                 Some(judged) if judged.press.verdict.race => {
@@ -181,35 +176,13 @@ impl BeliefScene {
                 .then(|| EntityUpdate::new(ERRORS, EntityData::State(String::new(), entity_content::ERROR)));
         };
         let why = error.why(session);
-        self.press = format!("## Error {} at {at}: {pressed}\n\n**Why an error**: {why}.\n{own}", error.number);
+        self.press = format!("## Error {} at {at}: {pressed}\n\n**Why an error**: {why}.\n", error.number);
+        if let Some(before) = follower.believed_wrong(error.press.time) {
+            self.press += &listed("Believed wrong before it, by the simulated participant", &before.participant);
+            self.press += &listed("Believed wrong before it, by the estimate", &before.estimate);
+        }
         let words = format!("{}: {pressed}: {why}", error.number);
         Some(EntityUpdate::new(ERRORS, EntityData::State(words, entity_content::ERROR)))
-    }
-
-    /// Entity updates of the estimate before a press: the curves at its time, and of an error what was believed wrong.
-    fn before_press(
-        &mut self,
-        session: &Session,
-        step: u64,
-        witness: &RecordedEstimate,
-        follower: &SessionFollower,
-    ) -> Vec<EntityUpdate> {
-        let kitchen = &session.kitchen;
-        let before = self.before.take();
-        let told = witness.aspects.iter().map(|told| (told.believes.as_str(), told.p_truth));
-        let held = recorded(kitchen, before.unwrap_or(session.state), told);
-        // What was shown at the press's time so far is before it.
-        self.tick = None;
-        if let Some(before) = before.filter(|_| self.is_error) {
-            let since = |aspect| {
-                let began = follower.false_beliefs.before(aspect, session.time)?.began;
-                let lasted = wording::seconds(session.age(began, session.time).as_secs_f64());
-                Some(format!("{} ({lasted})", moment_on_clock(session.trial_clock_at(began))))
-            };
-            let wrong = believed(kitchen, before, &held, since);
-            self.press += &titled("Believed wrong before it, by the estimate", &wrong);
-        }
-        self.drawn(session, step, &held, follower)
     }
 
     /// Entity updates of the estimate after all events so far: the curves, and what is believed now, in words.
@@ -222,12 +195,10 @@ impl BeliefScene {
     ) -> Vec<EntityUpdate> {
         self.tick = Some(session.time.0 / EVERY_NS);
         let kitchen = &session.kitchen;
-        let of_aspect = |aspect: usize| {
-            let thinks = belief.aspects[aspect].most_likely();
-            Held { aspect, thinks, p_truth: belief.p_truth(kitchen, session.state, AspectId(aspect as u8)) }
-        };
-        let held: Vec<Held> = (0..kitchen.aspects.len()).map(of_aspect).collect();
-        self.estimate = told_now(session, &held, follower);
+        let of_aspect =
+            |aspect: AspectId| Held { aspect: aspect.index(), p_truth: belief.p_truth(kitchen, session.state, aspect) };
+        let held: Vec<Held> = kitchen.aspect_ids().map(of_aspect).collect();
+        self.estimate = told_now(session, belief, &held, follower);
         self.drawn(session, step, &held, follower)
     }
 
@@ -305,30 +276,6 @@ impl BeliefScene {
         rows
     }
 
-    /// Entity updates from the recorded belief of a simulated participant before its press.
-    fn truly(&mut self, session: &Session, witness: &RecordedBelief) -> Vec<EntityUpdate> {
-        let kitchen = &session.kitchen;
-        let told = witness.aspects.iter().map(|told| (told.believes.as_str(), told.p_truth));
-        let held = recorded(kitchen, session.state, told);
-        let before = std::mem::replace(&mut self.own_at, session.time);
-        self.own_since.resize(held.len(), None);
-        for (one, since) in held.iter().zip(&mut self.own_since) {
-            let began = since.take().filter(|(thinks, _)| *thinks == one.thinks).map_or(before, |(_, began)| began);
-            *since = (one.p_truth < FALSE_BELOW).then_some((one.thinks, began));
-        }
-        let since = |aspect: AspectId| {
-            let (_, began) = self.own_since[aspect.index()]?;
-            Some(format!("{} at the earliest", moment_on_clock(session.trial_clock_at(began))))
-        };
-        let wrong = believed(kitchen, session.state, &held, since);
-        self.own = titled("Believed wrong before it, by the simulated participant", &wrong);
-        let wrong = held.iter().filter(|one| one.p_truth < FALSE_BELOW);
-        let mark = |one: &Held| {
-            EntityUpdate::new(held_truly(&kitchen.aspects[one.aspect].name), EntityData::Value(one.p_truth))
-        };
-        wrong.map(mark).collect()
-    }
-
     fn page(&self) -> String {
         fn or<'a>(text: &'a str, without: &'a str) -> &'a str {
             if text.is_empty() { without } else { text }
@@ -342,20 +289,24 @@ impl BeliefScene {
     }
 }
 
+/// Entity updates from the recorded belief of a simulated participant before its press.
+fn truly(kitchen: &Kitchen, witness: &RecordedBelief) -> Vec<EntityUpdate> {
+    let told = kitchen.aspects.iter().zip(&witness.aspects);
+    let wrong = told.filter(|(_, told)| told.p_truth < FALSE_BELOW);
+    wrong.map(|(about, told)| EntityUpdate::new(held_truly(&about.name), EntityData::Value(told.p_truth))).collect()
+}
+
 /// What is believed now, by the estimate, in Markdown.
-fn told_now(session: &Session, held: &[Held], follower: &SessionFollower) -> String {
-    let kitchen = &session.kitchen;
+fn told_now(session: &Session, belief: &DirichletBelief, held: &[Held], follower: &SessionFollower) -> String {
+    let named = |held: &Held| wording::aspect(&session.kitchen, session.state, AspectId(held.aspect as u8));
     let unsure = held.iter().filter(|one| (FALSE_BELOW..KNOWN).contains(&one.p_truth));
-    let unsure: Vec<String> =
-        unsure.map(|one| format!("{} {}", named(kitchen, session.state, one), percent(one))).collect();
-    let since = |aspect| {
-        let began = follower.false_beliefs.at(aspect, session.time)?.began;
-        Some(moment_on_clock(session.trial_clock_at(began)))
-    };
-    let wrong = believed(kitchen, session.state, held, since);
-    let mut told = match wrong.as_str() {
-        "" => "\nNothing is believed wrong now, by the estimate.\n".to_string(),
-        wrong => titled("Believed wrong now, by the estimate", wrong),
+    let unsure: Vec<String> = unsure.map(|one| format!("{} {}", named(one), percent(one.p_truth))).collect();
+    let since = |aspect| follower.false_beliefs.at(aspect, session.time).map(|held| held.began);
+    let values = |aspect| belief.aspect(aspect).mean();
+    let wrong = HeldFalseBelief::among(session, session.state, &[], values, since);
+    let mut told = match wrong.is_empty() {
+        true => "\nNothing is believed wrong now, by the estimate.\n".to_string(),
+        false => listed("Believed wrong now, by the estimate", &wrong),
     };
     if !unsure.is_empty() {
         let below = KNOWN * 100.0;
@@ -364,54 +315,21 @@ fn told_now(session: &Session, held: &[Held], follower: &SessionFollower) -> Str
     told
 }
 
-/// False beliefs in Markdown, the most certain first; empty without any. A list, since the viewer breaks lines in lists, not
-/// in tables. `since`: when an aspect's false belief began, in words.
-fn believed(kitchen: &Kitchen, state: State, held: &[Held], since: impl Fn(AspectId) -> Option<String>) -> String {
-    let mut wrong: Vec<&Held> = held.iter().filter(|one| one.p_truth < FALSE_BELOW).collect();
-    wrong.sort_by(|a, b| a.p_truth.total_cmp(&b.p_truth));
-    let line = |one: &&Held| {
-        let (thinks, truth) = thinks(kitchen, state, one);
-        let since = since(AspectId(one.aspect as u8)).map_or_else(String::new, |since| format!("; since {since}"));
-        format!(
-            "- **{}**: thinks **{thinks}**, {truth}; P(truth) {}{since}\n",
-            named(kitchen, state, one),
-            percent(one)
-        )
+/// False beliefs in Markdown, with a title; empty without any. A list, since the viewer breaks lines in lists, not in tables.
+fn listed(title: &str, held: &[HeldFalseBelief]) -> String {
+    let line = |one: &HeldFalseBelief| {
+        let since = one.since().map_or_else(String::new, |since| format!("; since {}", moment_on_clock(since)));
+        format!("- **{}**: {}; P(truth) {}{since}\n", one.about, one.told, percent(one.p_truth))
     };
-    wrong.iter().map(line).collect()
+    let lines: String = held.iter().map(line).collect();
+    if lines.is_empty() { lines } else { format!("\n{title}:\n\n{lines}") }
 }
 
-/// A list with its title; empty without lines.
-fn titled(title: &str, lines: &str) -> String {
-    if lines.is_empty() { String::new() } else { format!("\n{title}:\n\n{lines}") }
-}
-
-fn named(kitchen: &Kitchen, state: State, held: &Held) -> String {
-    wording::aspect(kitchen, state, AspectId(held.aspect as u8))
-}
-
-fn percent(held: &Held) -> String {
-    format!("{:.0} %", 100.0 * held.p_truth)
+fn percent(p: f64) -> String {
+    format!("{:.0} %", 100.0 * p)
 }
 
 /// A time on the trial's clock as the console shows it, and as the viewer does: "1:25.6 (+85.619s)".
 fn in_both_clocks(time: SessionTime) -> String {
     format!("{} (+{}s)", moment_on_clock(time), time.in_seconds())
-}
-
-/// What is believed about a state aspect and what is true, in words.
-fn thinks(kitchen: &Kitchen, state: State, held: &Held) -> (String, String) {
-    let aspect = AspectId(held.aspect as u8);
-    let truth = kitchen.true_value(state, aspect);
-    let (thinks, told) = wording::contrast(kitchen, aspect, held.thinks, truth);
-    (if held.thinks == truth { "unsure".to_string() } else { thinks }, told)
-}
-
-/// Beliefs that an event tells, by the names of their values.
-fn recorded<'a>(kitchen: &Kitchen, state: State, told: impl Iterator<Item = (&'a str, f64)>) -> Vec<Held> {
-    let held = |(aspect, (believes, p_truth)): (usize, (&str, f64))| {
-        let known = kitchen.aspects[aspect].value_named(believes);
-        Held { aspect, thinks: known.unwrap_or_else(|| kitchen.true_value(state, AspectId(aspect as u8))), p_truth }
-    };
-    told.enumerate().map(held).collect()
 }

@@ -32,10 +32,11 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::kitchen::KitchenChange;
 use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_session::follower::SessionFollower;
+use tomcom_session::history::signal_words;
 use tomcom_session::{Event, Session, TimestampedEvent, apply};
 
 /// Version of the scene's content and layout. A stream with another version is rebuilt from the log.
-pub const VERSION: u32 = 13;
+pub const VERSION: u32 = 14;
 
 /// A time on the trial's clock, in minutes, seconds and tenths. As on the console's clock, what is smaller is left out.
 pub fn moment_on_clock(time: SessionTime) -> String {
@@ -163,8 +164,10 @@ impl SessionScene {
             }
             Event::TrialStarted => rows.push(happenings::cost_line()),
             Event::Advised(advice) => {
-                self.belief.advice = happenings::advised(session, advice);
-                rows.extend(self.advice.follow(advice, &self.belief.advice));
+                let told = happenings::advised(session, advice);
+                rows.extend(self.advice.follow(advice, &told));
+                let unit = session.spec.assistant.concept.name().unit();
+                self.belief.advice = if told.is_empty() { signal_words::not_advised(unit, advice) } else { told };
             }
             Event::OfferOpened(offer) => rows.push(happenings::offer_opened(offer)),
             Event::OfferClosed { reason, .. } => rows.push(happenings::offer_closed(*reason)),

@@ -64,6 +64,8 @@ pub struct ParticipantData {
     /// Files that name the code and stay as they are: session files, frozen plans, recordings of others that were begun
     /// with it.
     pub naming: Vec<PathBuf>,
+    /// Names of the plans of the participant's recordings.
+    pub plans: BTreeSet<String>,
     /// "; did you mean P07?", where a recording of somebody else has a similar code.
     pub near: String,
     /// Folders that are removed if they are empty after the deletion; a folder comes after the one that contains it.
@@ -168,6 +170,9 @@ impl ForgetSearch {
                 // Its log cannot be changed.
                 let is_named = !is_recording && recording.recorded_as == self.found.code;
                 self.found.naming.extend(is_named.then(|| folder.join(LOG_NAME)));
+                // A corrected code need not be one of the plan.
+                let is_planned = is_recording && recording.recorded_as == recording.code;
+                self.found.plans.extend(recording.plan.clone().filter(|_| is_planned));
                 self.subject.add(recording);
             }
             RecordingOwner::Unknown(reason) => self.leave(folder, reason),

@@ -25,6 +25,8 @@ pub(super) struct KnownRecording {
     pub recorded_as: String,
     /// Time at which the recording began, as the identity of a Rerun stream states it; `None` without a readable header.
     began: Option<String>,
+    /// Name of the plan; `None` without a plan or a readable header.
+    pub plan: Option<String>,
 }
 
 /// Which participant the recording in a folder belongs to.
@@ -43,12 +45,12 @@ impl RecordingOwner {
     pub(super) fn read(folder: &Path) -> RecordingOwner {
         let log = folder.join(LOG_NAME);
         let settings = read_settings(folder);
-        let known = |code, recorded_as, began| {
-            RecordingOwner::Participant(KnownRecording { folder: folder.to_path_buf(), code, recorded_as, began })
+        let known = |code, recorded_as, began, plan| {
+            RecordingOwner::Participant(KnownRecording { folder: folder.to_path_buf(), code, recorded_as, began, plan })
         };
         if !is_file(&log) {
             return match settings {
-                Some((code, true)) => known(code.clone(), code, None),
+                Some((code, true)) => known(code.clone(), code, None, None),
                 _ => RecordingOwner::NoRecording,
             };
         }
@@ -73,11 +75,14 @@ impl RecordingOwner {
                 let simulated =
                     || Some(format!("seed {} trial {}", session["seed"].as_u64()?, header["trial"].as_u64()?));
                 let began = header["started"].as_str().map(str::to_string).or_else(simulated);
-                return known(code, recorded_as, began);
+                // A tutorial alone is of no plan's trials.
+                let step = Some(&session["step"]).filter(|step| step["periods"] != 0);
+                let plan = step.and_then(|step| step["plan"].as_str()).map(str::to_string);
+                return known(code, recorded_as, began, plan);
             }
         }
         match settings {
-            Some((code, _)) => known(code.clone(), code, None),
+            Some((code, _)) => known(code.clone(), code, None, None),
             None => RecordingOwner::Unknown(
                 "a recording that does not say whose it is: events.jsonl has no readable header, and session.toml is \
                  missing or damaged; it is to be deleted by hand, if it is the participant's",

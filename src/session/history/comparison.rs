@@ -218,7 +218,8 @@ fn believed(kitchen: &Kitchen, known: &CommunicationContext) -> [String; 2] {
         let name = wording::aspect(kitchen, known.state, aspect);
         let truth = kitchen.true_value(known.state, aspect);
         let (wrong, truth) = wording::contrast(kitchen, aspect, usize::from(held.wrong), truth);
-        format!("{name}: thinks {wrong} (probability {:.2}), {truth} ({:.2})", held.p_wrong, held.p_truth)
+        let thinks = wording::thinks(held.p_wrong.into());
+        format!("{name}: {thinks} {wrong} (probability {:.2}), {truth} ({:.2})", held.p_wrong, held.p_truth)
     };
     let doubted = |&(index, held): &(usize, &AspectBeliefSnapshot)| {
         format!("{} {:.2}", wording::aspect(kitchen, known.state, AspectId(index as u8)), held.p_truth)

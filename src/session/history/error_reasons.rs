@@ -22,8 +22,6 @@ pub struct ExplainedError {
     pub cause: Option<String>,
     /// "costs 2 presses".
     pub cost: String,
-    /// The kitchen before the press.
-    pub before: State,
 }
 
 impl ExplainedError {
@@ -53,7 +51,6 @@ impl ExplainedError {
                 why: Reasons { session, press, orders, earlier: &session.timeline[..until] }.why(),
                 cause: event_words::cause(&session.kitchen, press),
                 cost: event_words::cost(press),
-                before: press.before,
             }
         });
         explained.collect()

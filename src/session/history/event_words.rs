@@ -1,6 +1,9 @@
 //! What happened, in words: a line of text for each event of a recording, for pipes and plain terminals; and an entry of
 //! the list of events, for screens.
 
+use std::collections::BTreeMap;
+
+use super::signal_words;
 use super::wording::{self, location as said};
 use crate::event::{SignalEndReason, TrialEndReason, WizardScreenContent};
 use crate::follower::SessionFollower;
@@ -20,7 +23,7 @@ use tomcom_core::communication::recommendation::{Recommendation, SignalOption};
 use tomcom_core::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, State};
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::ErrorCause;
-use tomcom_core::measures::sequences::FALSE_BELOW;
+use tomcom_core::measures::sequences::{FALSE_BELOW, THINKS};
 use tomcom_core::mind::{AspectBelief, AspectEstimate, RecordedBelief, RecordedEstimate};
 use tomcom_core::robot::{ArmStage, SafetyMode};
 
@@ -136,11 +139,8 @@ pub fn words(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<S
 pub fn step_words(stamped: &TimestampedEvent, follower: &SessionFollower) -> String {
     words(stamped, follower).unwrap_or_else(|| match &stamped.event {
         Event::Advised(advice) => {
-            let by = follower.session.spec.assistant.concept.name();
-            let best = advice.options.first();
-            let best =
-                best.map(|best| format!("; best would be: {}{}", wording::signal(&best.signal), worth(best, by)));
-            format!("advised: no signal{}", best.unwrap_or_default())
+            let unit = follower.session.spec.assistant.concept.name().unit();
+            format!("advised: {}", signal_words::not_advised(unit, advice))
         }
         Event::RobotSafety { mode, .. } => format!("robot's arm: {} speed", mode.name().to_lowercase()),
         Event::External(event) => format!("external {} answers", event.role().name()),
@@ -190,7 +190,7 @@ fn verdict(stamped: &TimestampedEvent, follower: &SessionFollower) -> String {
 
 fn believes(kitchen: &Kitchen, belief: &RecordedBelief) -> String {
     let wrong = belief.aspects.iter().filter(|aspect| aspect.p_truth < FALSE_BELOW);
-    let told = |aspect: &AspectBelief| format!("{} = {}", said(&aspect.aspect), kitchen.worded(&aspect.believes));
+    let told = |one: &AspectBelief| held(kitchen, &one.aspect, &one.believes, &one.values);
     let wrong: Vec<String> = wrong.map(told).collect();
     // Why a simulated participant presses so, unless that follows from the true state ("as it is").
     let cause = match belief.cause.as_str() {
@@ -201,6 +201,12 @@ fn believes(kitchen: &Kitchen, belief: &RecordedBelief) -> String {
         true => format!("participant believes nothing wrong{cause}"),
         false => format!("participant believes {}{cause}", wrong.join(", ")),
     }
+}
+
+/// "cooking pot = empty"; "cooking pot = unsure" where no value is probable.
+fn held(kitchen: &Kitchen, aspect: &str, believes: &str, values: &BTreeMap<String, f64>) -> String {
+    let is_thought = values.get(believes).is_some_and(|p| *p >= THINKS);
+    format!("{} = {}", said(aspect), if is_thought { kitchen.worded(believes) } else { "unsure" })
 }
 
 /// The cause of a press as a simulated participant recorded it, in words: "believes cooking_pot: cooked rice".
@@ -214,8 +220,9 @@ fn worded_cause(kitchen: &Kitchen, cause: &str) -> String {
 
 fn estimated(kitchen: &Kitchen, estimate: &RecordedEstimate) -> Option<String> {
     let wrong = estimate.aspects.iter().filter(|aspect| aspect.p_truth < FALSE_BELOW);
-    let told = |aspect: &AspectEstimate| {
-        format!("{} = {} (wrong {:.2})", said(&aspect.aspect), kitchen.worded(&aspect.believes), 1.0 - aspect.p_truth)
+    let told = |one: &AspectEstimate| {
+        let held = held(kitchen, &one.aspect, &one.believes, &one.values);
+        format!("{held} (wrong {:.2})", 1.0 - one.p_truth)
     };
     let wrong: Vec<String> = wrong.map(told).collect();
     (!wrong.is_empty()).then(|| format!("estimated before the press: participant believes {}", wrong.join(", ")))

@@ -1,15 +1,15 @@
-//! The false beliefs of the estimate as intervals of time: the one source for replays, the review and exports.
+//! False beliefs: those of the estimate as intervals of time, and all before an error. The one source for replays, the review
+//! and exports.
 
-use std::collections::BTreeSet;
+use serde::Serialize;
 
 use crate::history::wording;
 use crate::{Event, Session, TimestampedEvent, TrialPhase};
 use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::recommendation::aspects_told;
-use tomcom_core::kitchen::{Agent, AspectId, Kitchen, State};
+use tomcom_core::kitchen::{Agent, AspectId, Kitchen, Press, State};
 use tomcom_core::measures::attribution::ErrorCause;
-use tomcom_core::measures::sequences::{FALSE_BELOW, FalseBeliefTracker};
-use tomcom_core::mind::belief::Belief;
+use tomcom_core::measures::sequences::FALSE_BELOW;
 use tomcom_core::mind::dirichlet::DirichletBelief;
 
 /// Where only gaze changes the estimate, false beliefs begin and end at the first sample of such a period, in nanoseconds;
@@ -181,20 +181,6 @@ impl EstimatedFalseBeliefs {
         self.last(aspect, |began| began <= time, |ended| ended < time)
     }
 
-    /// What was believed wrong just before a press, in words: what began last is first. `before`: the kitchen before it.
-    pub fn told_before(&self, session: &Session, press: SessionTime, before: State) -> Option<String> {
-        let kitchen = &session.kitchen;
-        let aspects = (0..kitchen.aspects.len()).map(|index| AspectId(index as u8));
-        let mut held: Vec<&EstimatedFalseBelief> = aspects.filter_map(|aspect| self.before(aspect, press)).collect();
-        held.sort_by_key(|one| std::cmp::Reverse(one.began));
-        let told = held.iter().map(|one| {
-            let since = session.trial_clock_at(one.began);
-            // Another order can have come since it began.
-            format!("{}: {} since {since}", wording::aspect(kitchen, before, one.aspect), one.told(kitchen))
-        });
-        (!held.is_empty()).then(|| format!("believed wrong, by the estimate: {}", told.collect::<Vec<_>>().join("; ")))
-    }
-
     /// When the belief about an aspect that is false at a time became right; `None` if it has not.
     pub fn corrected(&self, aspect: AspectId, time: SessionTime) -> Option<SessionTime> {
         let mut until = time;
@@ -209,30 +195,96 @@ impl EstimatedFalseBeliefs {
     }
 }
 
-/// What a participant that records its beliefs believed wrong that caused an error, in words. `before`: the kitchen before
-/// the press.
-pub(crate) fn told_by_participant(
-    session: &Session,
-    before: State,
-    belief: &Belief,
-    cause: ErrorCause,
-    episodes: &FalseBeliefTracker,
-) -> Option<String> {
-    let ErrorCause::Belief { target, with, .. } = cause else { return None };
-    let kitchen = &session.kitchen;
-    // Two orders of one dish share its recipe.
-    let targets = [Some(target), with].into_iter().flatten();
-    let aspects: BTreeSet<AspectId> = targets.flat_map(|target| target.aspects(kitchen)).collect();
-    let told = |aspect: AspectId| {
-        let held = episodes.all().find(|one| one.aspect == aspect && one.corrected.is_none())?;
-        let (values, truth) = (belief.distribution(aspect), kitchen.true_value(before, aspect));
-        let thinks = likeliest_wrong(values, truth);
-        let (thinks, truth) = wording::contrast(kitchen, aspect, thinks, truth);
-        let since = session.trial_clock_at(held.began);
-        Some(format!("{}: thinks {thinks}, {truth} since {since}", wording::aspect(kitchen, before, aspect)))
+/// A belief about a state aspect that is false at one moment. Values have the names of the log.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct HeldFalseBelief {
+    pub aspect: String,
+    /// The wrong value that is most probably believed.
+    pub believes: String,
+    pub p_believes: f64,
+    pub truth: String,
+    pub p_truth: f64,
+    /// On the trial's clock; `None` if it began with that moment.
+    pub since_s: Option<f64>,
+    /// In words: "recipe of tuna maki (order 1)".
+    #[serde(skip)]
+    pub about: String,
+    /// In words: "thinks empty, is nori".
+    #[serde(skip)]
+    pub told: String,
+}
+
+impl HeldFalseBelief {
+    /// The false ones among beliefs about all state aspects, those about `first` before the others, then the most certain
+    /// first. `values`: the belief about an aspect; `since`: when a false belief began, in session time.
+    pub fn among<'a>(
+        session: &Session,
+        state: State,
+        first: &[AspectId],
+        values: impl Fn(AspectId) -> &'a [f64],
+        since: impl Fn(AspectId) -> Option<SessionTime>,
+    ) -> Vec<HeldFalseBelief> {
+        let kitchen = &session.kitchen;
+        let p_truth = |aspect: AspectId| values(aspect)[kitchen.true_value(state, aspect)];
+        let mut held: Vec<AspectId> = kitchen.aspect_ids().filter(|&aspect| p_truth(aspect) < FALSE_BELOW).collect();
+        held.sort_by(|a, b| {
+            first.contains(b).cmp(&first.contains(a)).then_with(|| p_truth(*a).total_cmp(&p_truth(*b)))
+        });
+        let told = |aspect: AspectId| {
+            let (values, truth) = (values(aspect), kitchen.true_value(state, aspect));
+            let (wrong, names) = (likeliest_wrong(values, truth), &kitchen.aspects[aspect.index()]);
+            HeldFalseBelief {
+                aspect: names.name.clone(),
+                believes: names.labels[wrong].clone(),
+                p_believes: values[wrong],
+                truth: names.labels[truth].clone(),
+                p_truth: values[truth],
+                since_s: since(aspect).map(|since| session.trial_clock_at(since).as_secs_f64()),
+                about: wording::aspect(kitchen, state, aspect),
+                told: wording::false_belief(kitchen, aspect, (wrong, values[wrong]), truth),
+            }
+        };
+        held.into_iter().map(told).collect()
+    }
+
+    pub fn since(&self) -> Option<SessionTime> {
+        self.since_s.map(SessionTime::from_secs_f64)
+    }
+}
+
+/// What was believed wrong just before an error.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct FalseBeliefsBefore {
+    /// The participant's own, as far as it records them.
+    pub participant: Vec<HeldFalseBelief>,
+    pub estimate: Vec<HeldFalseBelief>,
+}
+
+impl FalseBeliefsBefore {
+    /// "believed wrong before it, by the participant: cooking pot: thinks empty, is nori since 1:15; by the estimate: …".
+    pub fn told(&self) -> Option<String> {
+        let one = |held: &HeldFalseBelief| {
+            let since = held.since().map_or(String::new(), |since| format!(" since {since}"));
+            format!("{}: {}{since}", held.about, held.told)
+        };
+        let parts = [("participant", &self.participant), ("estimate", &self.estimate)].into_iter();
+        let told = parts
+            .filter(|(_, held)| !held.is_empty())
+            .map(|(by, held)| format!("by the {by}: {}", held.iter().map(one).collect::<Vec<_>>().join("; ")));
+        let told: Vec<String> = told.collect();
+        (!told.is_empty()).then(|| format!("believed wrong before it, {}", told.join("; ")))
+    }
+}
+
+/// The state aspects that an error is about: those of the false belief that caused it, and the places of the press.
+pub(crate) fn aspects_of(kitchen: &Kitchen, press: &Press, cause: Option<ErrorCause>) -> Vec<AspectId> {
+    let targets = match cause {
+        Some(ErrorCause::Belief { target, with, .. }) => [Some(target), with],
+        _ => [None, None],
     };
-    let told: Vec<String> = aspects.into_iter().filter_map(told).collect();
-    (!told.is_empty()).then(|| format!("believed wrong, by the participant: {}", told.join("; ")))
+    let caused = targets.into_iter().flatten().flat_map(|target| target.aspects(kitchen));
+    let places = kitchen.involved(press.agent, press.button).into_iter().map(AspectId::of_location);
+    caused.chain(places).collect()
 }
 
 /// The most probable of the wrong values; of equally probable ones the first.

@@ -13,6 +13,7 @@ use tomcom_core::kitchen::{
     OrderContent, State,
 };
 use tomcom_core::measures::raters::{ErrorCauseCode, ErrorCauseKind};
+use tomcom_core::measures::sequences::THINKS;
 use tomcom_core::robot::AbortReason;
 use tomcom_core::robot::ArmPhase;
 use tomcom_core::robot::IdleReason;
@@ -76,6 +77,18 @@ pub fn contrast(kitchen: &Kitchen, aspect: AspectId, thinks: usize, truth: usize
         AspectKind::Recipe(_) if thinks != truth => (only(thinks, truth), format!("needs {}", only(truth, thinks))),
         _ => (value(kitchen, aspect, thinks).to_string(), format!("is {}", value(kitchen, aspect, truth))),
     }
+}
+
+/// What a belief with this probability of a value is called: "thinks", "may think".
+pub fn thinks(p: f64) -> &'static str {
+    if p >= THINKS { "thinks" } else { "may think" }
+}
+
+/// A false belief in words: "thinks empty, is nori"; "unsure, is nori" if even the likeliest wrong value is less probable
+/// than [`THINKS`]. `wrong`: this value and its probability.
+pub fn false_belief(kitchen: &Kitchen, aspect: AspectId, wrong: (usize, f64), truth: usize) -> String {
+    let (value, truth) = contrast(kitchen, aspect, wrong.0, truth);
+    if wrong.1 >= THINKS { format!("thinks {value}, {truth}") } else { format!("unsure, {truth}") }
 }
 
 /// A value of an aspect in words; an order without a dish is "no order".

@@ -399,6 +399,8 @@ pub struct TrialAttempt {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub excluded: Option<String>,
     pub outcome: RecordingOutcome,
+    /// Whether the program played the participant.
+    pub simulated: bool,
     /// Whether it was recorded under another version of the plan.
     pub other_version: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -515,6 +517,7 @@ impl PlannedTrialProgress {
             waived: made.waived.clone(),
             excluded: made.excluded.clone(),
             outcome: made.outcome.clone(),
+            simulated: made.kind == ParticipantKind::Simulated,
             other_version: made.step.digest != study.digest,
             recorded_as: made.recorded_as.clone(),
             other_arm: made.step.arm.filter(|arm| made.recorded_as.is_some() && *arm != slot.condition),

@@ -37,7 +37,6 @@ pub fn remarks(recording: &Path, correction: &CodeCorrection) -> FileResult<Vec<
     let plans: Vec<(PathBuf, PlanSpec)> =
         [beside, Path::new(SESSIONS)].into_iter().flat_map(|folder| plans_in(folder, plan)).collect();
     let codes: Vec<String> = plans.iter().flat_map(|(_, plan)| plan.codes()).collect();
-    let is_known = |one: &RecordedPlan| one.place.is_some_and(|place| place.participant.is_some());
     match plans.first() {
         Some((file, of_file)) if !codes.contains(after) => told.push(format!(
             "{after} is no participant of the plan \"{plan}\" in {} ({}), so tomcom plan and tomcom operate refuse the recording; tomcom \
@@ -47,8 +46,8 @@ pub fn remarks(recording: &Path, correction: &CodeCorrection) -> FileResult<Vec<
             recording.display(),
             person_code::did_you_mean(after, &codes)
         )),
-        None if !others.iter().any(|(other, _)| other.participant == *after && is_known(other)) => told.push(format!(
-            "no other recording of the plan \"{plan}\" in {} is of {after}: make sure that {after} is a participant of the plan",
+        None if !others.iter().any(|(other, _)| other.recorded_code() == after) => told.push(format!(
+            "no other recording of the plan \"{plan}\" in {} was begun for {after}: make sure that {after} is a participant of the plan",
             beside.display()
         )),
         _ => {}
@@ -56,8 +55,8 @@ pub fn remarks(recording: &Path, correction: &CodeCorrection) -> FileResult<Vec<
     // What the analysis leaves out is no recording of a trial.
     let counts = |recording: &Path| !matches!(standing::left_out(recording), Ok(Some(_)));
     let has = |code: &String| {
-        let is_it = |place: PlaceInPlan| place.period == step.period;
-        let is_of = |other: &RecordedPlan| other.participant == *code && other.place.is_some_and(is_it);
+        let is_it = |place: &PlaceInPlan| place.period == step.period;
+        let is_of = |other: &RecordedPlan| other.participant == *code && other.place.as_ref().is_some_and(is_it);
         others.iter().any(|(other, path)| is_of(other) && counts(path))
     };
     let period = step.period.filter(|_| counts(recording));

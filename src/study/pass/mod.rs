@@ -26,7 +26,9 @@ use crate::gathered::{GatheredPlace, GatheredRecordings, name};
 use crate::kept_cost::KeptCost;
 use crate::pass::reading::{AnalysisScope, RecordedConsent, WaivedPractice};
 pub use crate::pass::tell::{describe, describe_arms};
-use crate::planned_trial::{ForeignRecording, NAMED, RecordingCopy, foreign_in_words, missing_trials, named};
+use crate::planned_trial::{
+    ForeignRecording, NAMED, RecordingCopy, foreign_in_words, missing_trials, named, other_orders,
+};
 use crate::study_part::AnalysedRecording;
 use crate::tables::communications::concepts;
 use crate::tables::participants::{
@@ -230,7 +232,8 @@ struct CollectedRecordings {
     /// Settings and circumstances of all trials together. Those of single trials would take most of the memory.
     facts: RecordingFacts,
     kept: BTreeMap<String, usize>,
-    plans: Vec<RecordedPlan>,
+    /// Each with whether its trial counts.
+    plans: Vec<(RecordedPlan, bool)>,
     corrections: Vec<CorrectedRecording>,
     consents: Vec<(String, RecordedConsent)>,
     tutorials: Vec<TutorialQuestionRow>,
@@ -243,7 +246,7 @@ impl CollectedRecordings {
         for index in 0..number {
             let AnalysedRecording { recording, plan, correction, consent, tutorial, waived, trial, .. } =
                 export.kept_analysed(index)?;
-            all.plans.push(plan);
+            all.plans.push((plan, trial.as_ref().is_some_and(|(trial, ..)| trial.counts())));
             all.tutorials.extend(tutorial);
             all.waived.extend(waived);
             if let Some((trial, _, facts)) = trial {
@@ -283,12 +286,17 @@ fn conclude(
     let (details, mut filled) = tables_of_details(trials, &all.kept, export)?;
     let is_ended = |trial: &&TrialStatistics| trial.counts() && trial.ended == Some(TrialEndReason::Wizard);
     let ended = trials.iter().filter(is_ended).count() as u64;
+    let other_orders = other_orders(all.plans.iter().map(|(plan, counts)| (plan, *counts)));
+    let plans: Vec<RecordedPlan> = all.plans.into_iter().map(|(plan, _)| plan).collect();
     let check = |((digest, frozen), versions): ((String, FrozenPlan), PlanVersions)| {
-        PreregistrationCheck::new(digest, &frozen, &all.plans, &versions, ended)
+        let mut check = PreregistrationCheck::new(digest, &frozen, &plans, &versions, ended);
+        check.differences.extend(other_orders.iter().cloned());
+        check
     };
     let figures = StudySummary {
         preregistration: frozen.map(check),
-        missing_trials: missing_trials(&all.plans),
+        missing_trials: missing_trials(&plans),
+        other_orders,
         copies,
         foreign,
         corrections: all.corrections,

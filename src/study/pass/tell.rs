@@ -22,6 +22,7 @@ pub fn describe(figures: &StudySummary) -> String {
     let totals = &figures.totals;
     let mut text = format!("{}\n", figures.title);
     text += &lines(primary_outcome(figures));
+    text += &lines(figures.preregistration.as_ref().map(PreregistrationCheck::words));
     if figures.arms.is_some() {
         text += &format!("{RATES_AND_RATIO}\n");
     }
@@ -44,9 +45,9 @@ pub fn describe(figures: &StudySummary) -> String {
         );
     }
     text += &lines(foreign_in_words(&figures.foreign));
-    text += &lines(figures.preregistration.as_ref().map(PreregistrationCheck::words));
     text += &lines(in_words(&figures.missing_trials, &figures.corrections));
     text += &lines(figures.corrections.iter().map(CorrectedRecording::in_words));
+    text += &lines(figures.other_orders.iter().map(|one| format!("not the planned order of conditions: {one}")));
     if figures.human_models.len() > 1 {
         let models = figures
             .human_models

@@ -15,7 +15,7 @@ use crate::column::CsvTable;
 use crate::definitions::DEFINITIONS;
 use crate::facts::RecordingFacts;
 use crate::figures::{StudySummary, pairs_in_words};
-use crate::headline::{level, mixed_sources, not_reliable, per_100, primary_outcome};
+use crate::headline::{level, mixed_sources, no_interval, not_reliable, per_100, primary_outcome};
 use crate::pass::reading::WaivedPractice;
 use crate::planned_trial::{copies_in_words, foreign_in_words, in_words};
 use crate::report::elements::{
@@ -128,8 +128,9 @@ fn summary(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStati
     };
     let rates = figures.conditions.iter().map(|one| {
         let trials = text::count(one.trials, "trial", "trials");
-        let what = format!("{} per 100 presses of the human in {trials}: {}", outcome.title(), one.condition.title());
-        match per_100(one, outcome) {
+        let (outcome, condition) = (outcome.title(), one.condition.title());
+        let what = format!("{outcome} per 100 presses of the human, all of {trials} pooled: {condition}");
+        match per_100(one, figures.primary_outcome) {
             Some(rate) => card(&fixed(rate, 1), &what),
             None => card(DASH, &format!("{what}; {}", one.totals.why_no_rate())),
         }
@@ -138,16 +139,17 @@ fn summary(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStati
     let ratio = figures.arms.as_ref().filter(|found| found.contrasts.len() == 1).map(|found| {
         let one = &found.contrasts[0];
         let doubt = not_reliable(found, one).map_or(String::new(), |why| format!("; {why}"));
-        let interval = match one.interval.iter().all(|end| end.is_finite()) {
-            true => format!("{} interval {}", level(one.level), range(one.interval, 2)),
-            false => "too few trials for an interval".to_string(),
-        };
+        let told = || format!("{} interval {}", level(one.level), range(one.interval, 2));
+        let interval = no_interval(found, one).unwrap_or_else(told);
         let (arm, against) = (one.arm.title(), one.against.title());
         card(&fixed(one.ratio, 2), &format!("ratio of the rates, {arm} to {against}: {interval}{doubt}"))
     });
     html! {
         // Of several sentences the first says what the others show together; their figures stand in a table.
         @if let Some(sentence) = primary_outcome(figures).first() { p class="answer" { (sentence.replace(" < ", "\u{a0}<\u{a0}")) } "\n" }
+        @if let Some(found) = &figures.preregistration {
+            p class=(if found.differences.is_empty() { "note" } else { "warning" }) { (found.words()) } "\n"
+        }
         p class="lead" {
             (text::count(figures.trials, "trial", "trials")) " of "
             (text::count(figures.participants, "participant", "participants")) ", " (totals.actions) " recorded presses."
@@ -180,11 +182,9 @@ fn summary(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStati
         @if let Some((words, differs)) = mixed_sources(figures) {
             p class=(if differs { "warning" } else { "note" }) { "C" (&words[1..]) "." } "\n"
         }
-        @if let Some(found) = &figures.preregistration {
-            p class=(if found.differences.is_empty() { "note" } else { "warning" }) { (found.words()) } "\n"
-        }
         @if let Some(missing) = in_words(&figures.missing_trials, &figures.corrections) { p class="note" { (missing) } "\n" }
         @for one in &figures.corrections { p class="note" { (one.in_words()) "." } "\n" }
+        @for one in &figures.other_orders { p class="warning" { "Not the planned order of conditions: " (one) "." } "\n" }
         @if let Some(foreign) = foreign_in_words(&figures.foreign) { p class="warning" { (foreign) "." } "\n" }
         @if let Some(copies) = copies_in_words(&figures.copies) { p class="note" { (copies) } "\n" }
         @if let Some(found) = &figures.raters { (raters(found, figures)) }
@@ -194,8 +194,9 @@ fn summary(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStati
         }
         div class="figures" {
             (captions.figure(charts::rates_by_condition(trials, outcome), html! {
-                "A line joins the trials of a participant; black is the mean of the participants\u{2019} rates. The figures above and the \
-                 tables are the rates of all presses pooled."
+                "A line joins the trials of a participant; black is the mean of the participants\u{2019} rates, each of the same weight. \
+                 The rates of the first sentence, above and in the tables pool all presses, so that who pressed more weighs more: \
+                 they differ from these."
                 @if figures.conditions.len() == 2 { (keys(&[("first", "assisted first"), ("second", "unassisted first")])) }
             }))
             @if let Some(found) = &figures.arms {

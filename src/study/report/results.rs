@@ -251,7 +251,10 @@ fn items(captions: &mut Captions, figures: &StudySummary) -> Markup {
     });
     let heads = ["item", "after", "answers", "skipped", "mean", "number of answers 1, 2, \u{2026}, or by option"];
     captions.table(
-        "Answers by item and condition. Words stand only in the table questionnaires.csv.",
+        html! {
+            "Answers by item and condition. Words stand only in the table " code { "questionnaires.csv" } ", those of the debriefing, which \
+             are notes, only in the recordings (" code { "tomcom replay RECORDING" } ")."
+        },
         &heads,
         &rows.collect::<Vec<_>>(),
     )

@@ -183,7 +183,8 @@ fn what_two_raters_settle_is_no_rater_and_goes_stale_when_one_changes_a_code() {
     assert_eq!(figures.agreements, before.agreements, "kappa is that of the raters' own codes");
     assert_eq!(after.codes.len(), 2, "a consensus is no rater");
     let found = figures.recordings[0].consensus.clone().expect("a consensus");
-    assert_eq!((found.settled, found.open, found.stale.len()), (made.errors - 1, 1, 0));
+    assert_eq!((found.settled, found.open, found.stale.len()), (open.len() as u64, 1, 0));
+    assert_eq!(found.agreed, made.errors - 1 - open.len() as u64, "what is agreed is not settled, too");
 
     // It comes and goes with the export.
     let table = out.join("codes.csv");

@@ -132,14 +132,12 @@ impl Stage {
         }
         stage.estimate(&[("assembly_board", "rice cooked + nori", 0.96)], true);
         stage.at(21.8, shown(Signal::ShowRecipe("order_1".to_string())));
-        let before = stage.session.state;
         let error = |seconds, press: &str, why: &str| ExplainedError {
             time: at(seconds),
             press: press.to_string(),
             why: why.to_string(),
             cause: None,
             cost: "costs 1 press".to_string(),
-            before,
         };
         stage.model.errors =
             vec![error(15.0, "trash", "the hand is empty"), error(21.0, "take salmon", "order 1 needs tuna")];

@@ -167,11 +167,14 @@ fn a_replay_has_its_actions_in_the_palette_and_the_space_bar_does_nothing() {
 fn words_that_are_typed_in_a_replay_find_events() {
     let mut stage = replayed();
     let event = |seconds, words: &str| (ReplayAction::ToTime(at(seconds)), words.to_string());
-    let told = vec![event(12.0, "   0:12  human take tuna"), event(14.0, "   0:14  note tuna is wrong")];
+    let long = "   0:15  human cutting board: the hand and the place are empty; order 1 needs cut tuna";
+    let told = [(12.0, "   0:12  human take tuna"), (14.0, "   0:14  note tuna is wrong"), (15.0, long)];
+    let told: Vec<_> = told.map(|(seconds, words)| event(seconds, words)).into();
     stage.model.playback.as_mut().expect("a replay").told = told.into();
     stage.control('k');
     type_in(&mut stage, "tuna");
     stage.shows_everywhere(&["0:12  human take tuna", "0:14  note tuna is wrong"]);
+    stage.shows((120, 40), &[long.trim()]);
     type_in(&mut stage, " wrong");
     stage.wait(0.1);
     assert_eq!(stage.key(KeyCode::Enter), Some(ConsoleCommand::Move(ReplayAction::ToTime(at(14.0)))));
@@ -181,11 +184,13 @@ fn words_that_are_typed_in_a_replay_find_events() {
 #[test]
 fn a_time_or_a_number_that_is_typed_in_a_replay_leads_there() {
     let nth = |what, number| Some(ReplayAction::ToNth(what, number));
-    let clock = |seconds| Some(ReplayAction::ToClock(at(seconds)));
+    // After all that the console shows with this time.
+    let clock = |ns| Some(ReplayAction::ToClock(SessionTime(ns)));
     let places = [
-        ("2:13", clock(133.0)),
-        ("0:05.5", clock(5.5)),
-        ("133", clock(133.0)),
+        ("2:13", clock(133_999_999_999)),
+        ("0:05.5", clock(5_599_999_999)),
+        ("5.123456789", clock(5_123_456_789)),
+        ("133", clock(133_999_999_999)),
         ("2:61", None),
         ("error 7", nth(ReplayLandmark::Error, 7)),
         ("note 2", nth(ReplayLandmark::Marker, 2)),
@@ -205,7 +210,7 @@ fn a_time_or_a_number_that_is_typed_in_a_replay_leads_there() {
     type_in(&mut stage, "2:13");
     stage.shows_everywhere(&["go to 2:13 on the trial's clock"]);
     stage.wait(0.1);
-    assert_eq!(stage.key(KeyCode::Enter), clock(133.0).map(ConsoleCommand::Move));
+    assert_eq!(stage.key(KeyCode::Enter), clock(133_999_999_999).map(ConsoleCommand::Move));
     assert_eq!(stage.model.dialog, None);
     // Raters are not led to what would tell them whether the participant was assisted, nor to what they have no key for.
     let (kitchen, map) = (stage.session.kitchen.clone(), KeyFileBindings::default());

@@ -658,6 +658,8 @@ fn a_replay_says_at_which_landmark_it_stands_for_as_long_as_it_stands_there() {
     stage.replays(Playback { event: 10, events: 90, landmark, ..Playback::new("S001".to_string()) });
     stage.model.clock = at(3600.0);
     stage.shows_everywhere(&["error 1 of 17: take salmon", "costs 2 presses"]);
+    // The text tells the beliefs before the press.
+    stage.shows((120, 40), &["after the press"]);
     stage.model.say(NoticeLevel::Refused, "the recording has no later error");
     stage.shows_everywhere(&["the recording has no later error"]);
     stage.hides(SIZES[0], &["error 1 of 17"]);
@@ -667,8 +669,8 @@ fn a_replay_says_at_which_landmark_it_stands_for_as_long_as_it_stands_there() {
     SIZES.iter().for_each(|size| stage.hides(*size, &["error 1 of 17"]));
     // What the lines of a small terminal cut, a dialog shows whole, for as long as it is read.
     let playback = stage.model.playback.as_mut().expect("a replay");
-    let believed =
-        "believed wrong, by the participant: recipe of crab maki (order 2): thinks raw crab, needs cut crab since 0:12";
+    let believed = "believed wrong before it, by the participant: recipe of crab maki (order 2): thinks raw crab, needs cut crab \
+                    since 0:12";
     playback.landmark = Some((11, Some(ReplayLandmark::Error), format!("{words}; {believed}; the end")));
     stage.model.size = (80, 24);
     stage.shows((80, 24), &["error 1 of 17: take salmon", "^o shows all"]);

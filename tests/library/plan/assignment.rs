@@ -290,9 +290,19 @@ fn the_command_that_goes_on_with_a_rehearsal_says_that_it_is_one() {
     let open = PlanRecording { kind: ParticipantKind::Simulated, ..made(&study, 0, 1, RecordingOutcome::Open) };
     let out = folder("rehearsal");
     let mut figures = StudyProgress::from_study(&study, Path::new("plan.toml"), &out, None).expect("an empty folder");
-    figures.participants[0] = ParticipantProgress::from_recordings(&study, 0, &[open]).expect("of the plan");
+    // A trial that was recorded with the code, and so in the condition, of somebody else.
+    let planned = study.slots(0)[1].condition;
+    let other = if planned == StudyArm::None { StudyArm::Wizard } else { StudyArm::None };
+    let mut corrected = made(&study, 1, 1, RecordingOutcome::Complete);
+    (corrected.recorded_as, corrected.step.arm) = (Some("P02".to_string()), Some(other));
+    let recordings = [corrected, open];
+    figures.participants[0] = ParticipantProgress::from_recordings(&study, 0, &recordings).expect("of the plan");
     let told = describe(&figures, u16::MAX);
     assert!(told.contains("go on with tomcom operate plan.toml --code P01 --participant simulated --out "), "{told}");
+    assert!(told.contains("practice in 2026-03-14-P01-01: open, with a simulated participant\n"), "{told}");
+    let (other, planned) = (other.title(), planned.title());
+    let words = format!("done, recorded as P02, in the condition {other} (planned: {planned})\n");
+    assert!(told.contains(&words), "{told}");
 }
 
 /// A name that a terminal breaks cannot be found, nor typed again.

@@ -4,11 +4,11 @@ use std::cell::RefCell;
 
 use tomcom::run::open_viewer::{RerunReviewRequest, review};
 use tomcom::run::seekable_replay::SeekableReplay;
-use tomcom_core::measures::sequences::FALSE_BELOW;
+use tomcom_core::measures::sequences::{FALSE_BELOW, THINKS};
 use tomcom_core::measures::wizard_performance::SignalVerdict;
 use tomcom_devices::scene::{EntityData, EntityUpdate, SceneInputs, SceneUpdate, SessionScene, WIDE};
 use tomcom_session::history::error_reasons::ExplainedError;
-use tomcom_session::history::{signal_words, wording};
+use tomcom_session::history::{event_words, signal_words, wording};
 use tomcom_session::replay::ReplayLandmark;
 use tomcom_session::settings::Condition;
 use tomcom_session::wizard_log::signal_verdicts;
@@ -130,7 +130,7 @@ fn texts<'a>(moments: &'a [SceneUpdate], entity: &str) -> Vec<(&'a SceneUpdate, 
 #[test]
 fn a_page_says_what_the_error_was_why_and_what_was_believed_before_it() {
     let recording = Path::new("tests/golden/format-3-offers.jsonl");
-    let (moments, _) = shown(recording);
+    let (moments, events) = shown(recording);
     let mut replay = RecordingReplay::open(recording).expect("a recording");
     replay.run().expect("events of a session");
     let errors: Vec<u64> =
@@ -154,17 +154,37 @@ fn a_page_says_what_the_error_was_why_and_what_was_believed_before_it() {
         assert!(page.lines().next().is_some_and(|heading| !heading.contains(&why)), "{why}: {page}");
         let is_bar = |text: &str| text.starts_with(&format!("{number}: ")) && text.matches(&why).count() == 1;
         assert!(states.iter().any(|(moment, text)| moment.step == *seq && is_bar(text)), "{why}");
+        // All that the log has as believed wrong before the press, in the words of replays.
+        let believed = replay.follower.believed_wrong(judged.time).expect("of each error");
+        let own = events.iter().rev().find_map(|stamped| match &stamped.event {
+            Event::ParticipantBelieves(witness) if stamped.seq < *seq => Some(witness),
+            _ => None,
+        });
+        let estimated = events.iter().find_map(|stamped| match &stamped.event {
+            Event::BeliefEstimated(witness) if witness.press == *seq => Some(witness),
+            _ => None,
+        });
+        let own = own.expect("a belief").aspects.iter().filter(|one| one.p_truth < FALSE_BELOW).count();
+        let estimated = estimated.expect("an estimate").aspects.iter().filter(|one| one.p_truth < FALSE_BELOW).count();
+        assert_eq!((believed.participant.len(), believed.estimate.len()), (own, estimated), "{believed:?}");
+        let told = believed.told().unwrap_or_default();
+        for one in believed.participant.iter().chain(&believed.estimate) {
+            assert!(page.contains(&format!("- **{}**: {}; P(truth) ", one.about, one.told)), "{one:?}: {page}");
+            assert!(told.contains(&format!("{}: {}", one.about, one.told)), "{one:?}: {told}");
+            assert_eq!(one.told.starts_with("unsure, "), one.p_believes < THINKS, "{one:?}");
+            assert!(one.since().is_none_or(|since| since < replay.session().trial_clock_at(judged.time)), "{one:?}");
+        }
     }
     let believed =
         |by: &str| pages.iter().any(|(_, page)| page.contains(&format!("Believed wrong before it, by the {by}:")));
     assert!(believed("estimate") && believed("simulated participant"));
-    // The participant's own belief is known at presses alone: it is as old as the press before, at most.
-    for (_, page) in &pages {
-        let Some((before, own)) = page.split_once("by the simulated participant:\n\n") else { continue };
-        let at = before.split_once(" at ").and_then(|(_, rest)| rest.split_once(" (+")).expect("a time").0;
-        for line in own.lines().take_while(|line| line.starts_with("- ")) {
-            assert!(line.ends_with(" at the earliest") && !line.contains(&format!("since {at} ")), "{at}: {line}");
-        }
+    // What is not probable is not stated.
+    for stamped in &events {
+        let Event::BeliefEstimated(witness) = &stamped.event else { continue };
+        let wrong = witness.aspects.iter().filter(|one| one.p_truth < FALSE_BELOW);
+        let unsure = wrong.filter(|one| one.values[&one.believes] < THINKS).count();
+        let line = event_words::words(stamped, &replay.follower).unwrap_or_default();
+        assert_eq!(line.matches(" = unsure").count(), unsure, "{line}");
     }
 }
 
@@ -579,6 +599,7 @@ fn a_signal_has_its_reason_as_long_as_it_is_shown_and_then_what_became_of_it() {
     // What there is none of is told, too.
     let says = |words: &str| pages.iter().any(|(_, page)| page.contains(words));
     assert!(says("**On the display**: no signal\n") && says("**Assistant**: no advice\n"));
+    assert!(says("**Assistant**: no signal; best would be recipe of order "), "why nothing is advised");
     assert!(pages.iter().all(|(_, page)| !page.contains("**: \n")));
     assert!(!moments.iter().flat_map(|moment| &moment.rows).any(|row| row.entity.starts_with("robot/arm")));
 }

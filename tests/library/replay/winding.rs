@@ -207,7 +207,7 @@ fn a_replay_goes_from_one_error_signal_or_false_belief_to_the_next_and_back() {
         assert!(named.starts_with(&format!("error {} of {}: ", visited.len(), errors.len())), "{named}");
         assert!(named.split(": ").count() > 2, "press and reason: {named}");
         assert!(named.contains("costs "), "the cost, and the cause where it is known: {named}");
-        believed += usize::from(named.contains("; believed wrong, by the participant: "));
+        believed += usize::from(named.contains("; believed wrong before it, by the participant: "));
     }
     assert!(believed > 0, "what the participant itself believed");
     assert_eq!(visited, errors);
@@ -251,4 +251,16 @@ fn a_time_of_the_trials_clock_is_found_across_pauses() {
     }
     assert!(film.session.pauses.len() > 3, "{:?}", film.session.pauses);
     assert_eq!(film.at_clock(length + at(1.0)), None);
+    // What is typed as it is shown stands after the event, and the end is there as it is shown.
+    let (_, events) = film.length();
+    film.wind(events);
+    let shown = |clock: SessionTime| [clock.to_string(), clock.with_tenths(), clock.with_ms()];
+    let errors: Vec<(SessionTime, [String; 3])> =
+        film.errors.iter().map(|error| (error.time, shown(film.session.trial_clock_at(error.time)))).collect();
+    assert!(errors.len() > 2, "{errors:?}");
+    let typed = |text: &str| film.at_clock(SessionTime::from_clock(text).expect("a time"));
+    for (time, shown) in errors {
+        assert!(shown.iter().all(|text| typed(text).is_some_and(|typed| typed >= time)), "{shown:?}");
+    }
+    assert!(shown(length).iter().all(|text| typed(text).is_some()), "{length}");
 }

@@ -38,6 +38,13 @@ fn the_first_sentence_is_the_primary_outcome_and_says_no_more_than_its_interval(
         // The same words in the terminal and in the report.
         assert!(describe(&figures).contains(sentence) && page(&figures, trials).contains(sentence.as_str()));
     }
+    // With so few participants an interval would reach from almost nothing to a multiple.
+    let few = trials(&[[20, 24], [22, 18]], &[[20, 21], [22, 18]]);
+    let figures = summary(&few);
+    let told = "(4 participants are too few for a test and an interval; at least 6 are needed)";
+    let [sentence] = &primary_outcome(&figures)[..] else { panic!("one contrast") };
+    assert!(sentence.contains(told) && !sentence.contains("interval "), "{sentence}");
+    assert!(page(&figures, &few).contains("unassisted: 4 participants are too few for a test and an interval"));
     let mut one = clear;
     for trial in one.iter_mut().filter(|trial| trial.condition == Condition::Wizard) {
         trial.left_out = Some("excluded: asleep".to_string());

@@ -8,7 +8,7 @@ use tomcom_study::files::pool_file::{freeze, read_frozen};
 use tomcom_study::frozen_plan::{
     FrozenDefinition, FrozenPlan, PlaceInPlan, PlanVersions, PreregistrationCheck, RecordedPlan,
 };
-use tomcom_study::planned_trial::{MissingTrials, in_words, missing_trials};
+use tomcom_study::planned_trial::{MissingTrials, in_words, missing_trials, other_orders};
 
 use crate::support::*;
 
@@ -25,8 +25,13 @@ fn frozen() -> FrozenPlan {
 /// A recording of every participant of the plan.
 fn recordings(frozen: &FrozenPlan) -> Vec<RecordedPlan> {
     let plan = Some((frozen.plan.clone(), frozen.plan_digest.clone()));
-    let recording = |code: &String| RecordedPlan { participant: code.clone(), plan: plan.clone(), place: None };
+    let recording = |code: &String| RecordedPlan { plan: plan.clone(), ..alone(code) };
     frozen.participants.iter().map(recording).collect()
+}
+
+/// A recording of no plan.
+fn alone(code: &str) -> RecordedPlan {
+    RecordedPlan { participant: code.to_string(), recorded_as: None, plan: None, place: None }
 }
 
 #[test]
@@ -108,16 +113,21 @@ fn each_difference_is_told() {
     let ended = PreregistrationCheck::new("0".to_string(), &plan, &all, &PlanVersions::default(), 3).differences;
     assert_eq!(ended, ["the wizard ended 3 trials that count early"]);
     differs(|plan| drop(plan.participants.pop()), "1 participant is not in the frozen plan: P20");
-    let alone = [&all[..], &[RecordedPlan { participant: "P01".to_string(), plan: None, place: None }]].concat();
+    let alone = [&all[..], &[alone("P01")]].concat();
     assert_eq!(differences(&plan, &alone), ["1 recording is of no plan"]);
 }
 
 /// A recording of a participant, by index in the plan, and its trial; `None` for practice. `periods` trials are planned.
+/// Every second participant has the order of the plan turned round.
 fn recording(plan: &str, participant: u32, period: Option<u32>, periods: u32) -> RecordedPlan {
+    let group = if participant % 2 == 0 { "AB" } else { "BA" }.to_string();
+    let is_first = |period: u32| (period == 1) == (participant % 2 == 0);
+    let arm = period.map(|period| if is_first(period) { StudyArm::None } else { StudyArm::Wizard });
     RecordedPlan {
         participant: format!("P{:02}", participant + 1),
+        recorded_as: None,
         plan: Some((plan.to_string(), format!("digest of {plan}"))),
-        place: Some(PlaceInPlan { participant: Some(participant), period, periods }),
+        place: Some(PlaceInPlan { participant, group, period, periods, arm }),
     }
 }
 
@@ -150,7 +160,7 @@ fn a_whole_study_misses_nothing_and_a_lost_recording_is_named() {
 fn participants_without_a_recording_are_found_before_the_last_and_plans_are_told_apart() {
     let mut all = planned_trials(2..3);
     all.push(recording("other", 0, Some(3), 3));
-    all.push(RecordedPlan { participant: "P01".to_string(), plan: None, place: None });
+    all.push(alone("P01"));
     // A tutorial alone has no trials.
     all.push(recording("short-tutorial", 0, None, 0));
     let missing = missing_trials(&all);
@@ -177,11 +187,7 @@ fn participants_without_a_recording_are_found_before_the_last_and_plans_are_told
 #[test]
 fn a_recording_whose_code_was_corrected_is_of_the_participant_who_has_the_code() {
     // The second participant's first trial was that of the third one, whose second trial is there, too.
-    let corrected = |code: &str, period: u32| RecordedPlan {
-        participant: code.to_string(),
-        place: Some(PlaceInPlan { participant: None, period: Some(period), periods: 2 }),
-        ..recording("short", 1, Some(period), 2)
-    };
+    let corrected = |code: &str, period: u32| corrected(code, 1, period);
     let mut all = planned_trials(0..1);
     all.extend([corrected("P03", 1), recording("short", 1, Some(2), 2), recording("short", 2, Some(2), 2)]);
     let missing = missing_trials(&all);
@@ -204,6 +210,38 @@ fn a_recording_whose_code_was_corrected_is_of_the_participant_who_has_the_code()
     };
     let words = in_words(&missing, &[correction("P02", "P03"), correction("P05", "P04")]).expect("missing");
     assert!(words.starts_with(told) && words.contains("short-P02-1 (P02 is P03); tomcom correct"), "{words}");
+}
+
+/// A recording of the second plan's participant by index that was found to be of `code`.
+fn corrected(code: &str, begun_for: u32, period: u32) -> RecordedPlan {
+    let begun = recording("short", begun_for, Some(period), 2);
+    RecordedPlan { participant: code.to_string(), recorded_as: Some(begun.participant.clone()), ..begun }
+}
+
+#[test]
+fn who_had_the_order_of_somebody_else_is_told_with_the_planned_one() {
+    let orders = |all: &[RecordedPlan]| other_orders(all.iter().map(|one| (one, true)));
+    assert_eq!(orders(&planned_trials(0..4)), Vec::<String>::new());
+    // P03 and P04 took part with each other's codes, in both trials.
+    let swapped = |code: &'static str, begun_for: u32| (1..=2).map(move |period| corrected(code, begun_for, period));
+    let mut all: Vec<RecordedPlan> =
+        planned_trials(0..2).into_iter().chain(swapped("P03", 3)).chain(swapped("P04", 2)).collect();
+    let told =
+        "P03, recorded as P04, had trial 1 wizard, trial 2 unassisted; planned: trial 1 unassisted, trial 2 wizard";
+    assert_eq!(orders(&all)[0], told);
+    assert!(orders(&all)[1].starts_with("P04, recorded as P03, had trial 1 unassisted, "), "{:?}", orders(&all));
+    assert_eq!(orders(&all).len(), 2);
+    // Both codes are those of the plan, though all recordings of both were corrected.
+    assert!(missing_trials(&all).is_empty());
+    all.retain(|one| one.participant != "P04");
+    let words = in_words(&missing_trials(&all), &[]).expect("missing");
+    assert_eq!(words, "2 trials of the plan \"short\" have no recording: P04 trials 1, 2");
+    let told = "P03, recorded as P04, had trial 1 wizard, trial 2 unassisted; planned: not known, since ";
+    assert!(orders(&all)[0].starts_with(told), "{:?}", orders(&all));
+    // Of a trial that does not count nothing is told; nor of the order of one who has the same group.
+    assert_eq!(other_orders(all.iter().map(|one| (one, one.recorded_as.is_none()))), Vec::<String>::new());
+    let same: Vec<RecordedPlan> = planned_trials(2..3).into_iter().chain(swapped("P03", 0)).collect();
+    assert_eq!(orders(&same), Vec::<String>::new());
 }
 
 #[test]
@@ -259,8 +297,9 @@ fn a_frozen_plan_names_file_and_item_of_another_question() {
     let mut both = files.clone();
     both.spec.seed += 1;
     let error = check_frozen(session, &both, &file).expect_err("another seed");
-    let told = format!("; changed, too: questionnaire acceptance.item.{id}.text from ");
+    let told = format!("\nchanged, too: questionnaire acceptance.item.{id}.text from ");
     assert!(error.remedy().starts_with("seed = ") && error.remedy().contains(&told), "{}", error.remedy());
+    assert!(error.remedy().ends_with("tomcom plan sessions/study.toml --freeze NEW"), "{}", error.remedy());
 }
 
 /// Three conditions made of a plan that asks after its two trials: the last questionnaire would be lost without a word.

@@ -295,7 +295,7 @@ fn analysed_recordings_are_kept_in_files_until_all_are_read() {
         swept: vec![ConceptPreventionCounts { concept: ConceptName::TomCom, parameter: 0.1 + 0.2, count }],
         probes: Some(one_right_answer(Condition::None)),
     };
-    let plan = RecordedPlan { participant: trial.participant.clone(), plan: None, place: None };
+    let plan = RecordedPlan { participant: trial.participant.clone(), recorded_as: None, plan: None, place: None };
     let (reason, orders, presses, errors) = ("no time".to_string(), 0, 24, 9);
     let waived = WaivedPractice { participant: trial.participant.clone(), reason, orders, presses, errors };
     let words = format!("practice criterion not met, and waived: {} (no time; ", trial.participant);

@@ -234,22 +234,34 @@ fn errors_of_a_recording_are_listed_as_commands_that_open_the_viewer_there() {
     }
     // What was believed wrong before an error.
     assert!(
-        told.lines().any(|line| line.contains(", error ") && line.contains("; believed wrong, by the estimate: ")),
+        told.lines()
+            .any(|line| line.contains(", error ") && line.contains("; believed wrong before it, by the estimate: ")),
         "{told}"
     );
     // An order has one dish at a time.
-    for believed in told.lines().filter_map(|line| line.split_once("; believed wrong, by the estimate: ")) {
+    for believed in told.lines().filter_map(|line| line.split_once(", by the estimate: ")) {
         assert!(believed.1.matches("(order 1)").count() <= 1 && !believed.1.contains(" more"), "{believed:?}");
     }
     // The same for programs.
     let listed = json(&["review", recording, "--errors", "--beliefs"]);
     let listed = listed["landmarks"].as_array().expect("landmarks");
     assert!(listed.iter().any(|one| one["kind"] == "error" && one["from_s"].is_f64()), "{listed:?}");
+    for one in listed {
+        let held = match one["kind"].as_str() {
+            Some("error") => &one["believed_wrong"]["estimate"][0],
+            _ => one,
+        };
+        let told = |words: &str| held[words].is_string();
+        assert!(held.is_null() || told("aspect") && told("believes") && told("truth"), "{one}");
+        assert!(one["kind"] != "error" || one["press"].is_u64() && one["time_s"] == one["from_s"], "{one}");
+    }
     let told = list(&["--errors", "--beliefs"]);
     let words: Vec<&str> = listed.iter().filter_map(|one| one["words"].as_str()).collect();
     assert!(told.lines().zip(&words).all(|(line, words)| line.ends_with(words)), "{told}");
     assert_eq!(words.len(), told.lines().count());
     assert!(complaint(&["review", recording, "--format", "json"]).contains("--errors"));
+    let late = complaint(&["review", recording, "--at", "99:00"]);
+    assert!(late.contains("found --at 99:00, after the end: the recording is ") && late.contains(", up to "), "{late}");
     // Each option lists its own only.
     let listed = list(&["--errors"]);
     assert!(listed.lines().all(|line| line.contains(", error ")), "{listed}");

@@ -114,6 +114,9 @@ fn settle_with_another(terminal: &Terminal, name: &str, kept: &[String]) {
     terminal.see("error 2 is the first without a code");
     terminal.see("R1: wrong about cooking pot");
     terminal.see("R2: race");
+    let screen = terminal.screen();
+    let bar = screen.lines().find_map(|line| line.trim_start().strip_prefix("recording ")).expect("the bar");
+    assert!(bar.matches(['e', '✗']).count() <= 1, "only what they coded differently is marked: {bar}");
     let settled = [
         ("2", "code saved; all is settled"),
         ("u", "saved: code of error 2 removed"),
@@ -130,6 +133,8 @@ fn settle_with_another(terminal: &Terminal, name: &str, kept: &[String]) {
     assert_eq!(terminal.log(), log, "the log stays as it is");
     let told = done(&["codes", name]);
     assert!(told.contains("consensus of R1 and R2 on errors: 1 agreed, 1 settled"), "{told}");
+    let told = done(&["review", name, "--errors"]);
+    assert!(told.contains("; R1: wrong about cooking pot; R2: race; R1+R2: race\n"), "{told}");
     terminal.run(&["replay", name, "--settle", "R1", "R3"]);
     terminal.is_whole(2);
     terminal.see("no codes of the rater R3");

@@ -36,16 +36,6 @@ const Art = (() => {
   const shadow = (cx, cy, rx, ry) => `<ellipse cx="${cx}" cy="${cy}" rx="${rx}" ry="${ry}" fill="#000" opacity=".13"/>`;
   const outline = (colour, width = 2.2) => `stroke="${shade(colour, -0.42)}" stroke-width="${width}" stroke-linejoin="round"`;
 
-  /** A bent body in segments, as both shellfish have it. */
-  function bent(colour) {
-    const arc = "M22 66 C14 34 44 14 68 26 C84 34 86 54 76 66";
-    const rings = [[25, 50, 41, 55], [30, 34, 45, 45], [45, 23, 51, 39], [62, 22, 58, 39], [77, 32, 63, 45], [82, 48, 65, 54]];
-    return `<path d="${arc}" fill="none" stroke="${shade(colour, -0.42)}" stroke-width="25" stroke-linecap="round"/>
-      <path d="${arc}" fill="none" stroke="${colour}" stroke-width="20.5" stroke-linecap="round"/>
-      <path d="M26 58 C22 38 46 20 66 30" fill="none" stroke="${shade(colour, 0.45)}" stroke-width="4.5" stroke-linecap="round" opacity=".8"/>
-      ${rings.map(([a, b, c, d]) => `<path d="M${a} ${b} L${c} ${d}" stroke="${shade(colour, -0.3)}" stroke-width="2.6" stroke-linecap="round"/>`).join("")}`;
-  }
-
   const ITEMS = {
     grains(c) {
       const spots = [];
@@ -90,15 +80,27 @@ const Art = (() => {
       return shadow(50, 80, 40, 6) + slice(8, 18) + slice(26, 27) + slice(44, 36);
     },
     prawn(c) {
-      return `${shadow(52, 84, 36, 6)}${bent(c)}
+      const arc = "M22 66 C14 34 44 14 68 26 C84 34 86 54 76 66";
+      const rings = [[25, 50, 41, 55], [30, 34, 45, 45], [45, 23, 51, 39], [62, 22, 58, 39], [77, 32, 63, 45], [82, 48, 65, 54]];
+      return `${shadow(52, 84, 36, 6)}<path d="${arc}" fill="none" stroke="${shade(c, -0.42)}" stroke-width="25" stroke-linecap="round"/>
+        <path d="${arc}" fill="none" stroke="${c}" stroke-width="20.5" stroke-linecap="round"/>
+        <path d="M26 58 C22 38 46 20 66 30" fill="none" stroke="${shade(c, 0.45)}" stroke-width="4.5" stroke-linecap="round" opacity=".8"/>
+        ${rings.map(([x, y, toX, toY]) => `<path d="M${x} ${y} L${toX} ${toY}" stroke="${shade(c, -0.3)}" stroke-width="2.6" stroke-linecap="round"/>`).join("")}
         <path d="M70 66 L62 88 L76 80 L90 88 L84 66 Z" fill="${shade(c, -0.12)}" ${outline(c)}/>
         <circle cx="20" cy="62" r="3.1" fill="#2c2422"/>
         <path d="M16 70 q-8 6 -5 16 M24 75 q-2 8 4 13" fill="none" stroke="${shade(c, -0.35)}" stroke-width="2.4" stroke-linecap="round"/>`;
     },
+    // The whole crab from above: a wide shell with legs and raised claws, whose outline no other thing has.
     claw(c) {
-      return `${shadow(52, 84, 36, 6)}${bent(c)}
-        <path d="M66 60 C56 74 62 88 72 92 C70 82 73 77 77 75 C79 80 80 86 78 92 C92 88 96 72 86 60 Z" fill="${shade(c, -0.1)}" ${outline(c)}/>
-        <path d="M15 70 l-4 14 M24 75 l1 13" fill="none" stroke="${shade(c, -0.35)}" stroke-width="4" stroke-linecap="round"/>`;
+      const legs = [[24, 58, 8, 50, 3, 60], [22, 66, 8, 64, 4, 76], [26, 73, 13, 77, 11, 89]];
+      const side = `${legs.map(([x, y, kneeX, kneeY, endX, endY]) => `<path d="M${x} ${y} L${kneeX} ${kneeY} L${endX} ${endY}"/>`).join("")}<path d="M30 52 C18 48 14 40 18 32"/>`;
+      const limbs = (colour, width) => `<g fill="none" stroke="${colour}" stroke-width="${width}" stroke-linecap="round" stroke-linejoin="round">${side}<g transform="matrix(-1 0 0 1 100 0)">${side}</g></g>`;
+      const pincer = `<path d="M17 36 C3 30 3 12 18 4 C16 12 18 17 23 20 C26 16 30 12 35 12 C37 26 30 38 17 36 Z" fill="${shade(c, -0.08)}" ${outline(c)}/>`;
+      return `${shadow(50, 88, 40, 6)}${limbs(shade(c, -0.42), 9)}${limbs(shade(c, -0.08), 5)}${pincer}<g transform="matrix(-1 0 0 1 100 0)">${pincer}</g>
+        <path d="M20 62 C20 46 34 41 50 41 C66 41 80 46 80 62 C80 78 64 85 50 85 C36 85 20 78 20 62 Z" fill="${c}" ${outline(c)}/>
+        <path d="M28 58 C30 51 38 47 48 47" fill="none" stroke="${shade(c, 0.45)}" stroke-width="4" stroke-linecap="round" opacity=".8"/>
+        <path d="M36 75 q14 -7 28 0" fill="none" stroke="${shade(c, -0.3)}" stroke-width="2.6" stroke-linecap="round"/>
+        ${[43, 57].map((x) => `<path d="M${x} 42 V36" stroke="${shade(c, -0.42)}" stroke-width="3"/><circle cx="${x}" cy="34" r="3.4" fill="#2c2422"/>`).join("")}`;
     },
     morsels(c, light = "#fff1e6") {
       // Dark ones are sticks, since colour alone is not enough to tell two contents apart.

@@ -344,6 +344,8 @@ const Questions = (() => {
     if (["ArrowLeft", "Backspace"].includes(name)) return back(question);
     if (question.item && ["ArrowRight", "Enter"].includes(name)) return next(question);
     if (!question.item && name === "Enter") return performance.now() < settled ? undefined : tell({ kind: "confirm" });
+    const last = kind === "scale" ? form.points : kind === "choice" ? form.options.length : 0;
+    if (digit !== null && last) return Stage.say("number range", ` 1 – ${Math.min(9, last)}`);
     return kind !== "text" && [...name].length === 1 ? Stage.say("nothing") : undefined;
   }
 

@@ -465,19 +465,21 @@ const Stage = (() => {
     if (!parts) return;
     const role = marks.acts || marks.watches ? "" : marks.free ? scene.words.free : scene.words.watches;
     const isLost = marks.lost && !marks.ended;
-    parts.toast.replaceChildren(...(isLost ? [text("b", "", scene.words.lost), text("span", "", scene.words["lost text"])] : [marks.ended ? scene.words.ended : role]));
+    // The end is told once.
+    const isTold = parts.sheet.textContent.includes(scene.words.ended), line = marks.ended ? (isTold ? "" : scene.words.ended) : role;
+    parts.toast.replaceChildren(...(isLost ? [text("b", "", scene.words.lost), text("span", "", scene.words["lost text"])] : [line]));
     parts.toast.className = `toast ${isLost ? "open says-lost" : parts.toast.textContent ? "open" : ""}`;
   }
 
   // What is to be pressed or answered now, or what goes on.
   const DOES = ".hinted, .scale, .slider, .options, .number, textarea, .choosing, .probing .choices, .lesson .choices, .lesson .next, .turns .confirm";
 
-  /** Says something that is about no place: near what can be done, in a trial where other texts open; nothing takes back what was said. */
-  function say(name) {
+  /** Says something that is about no place, `more` behind it: near what can be done, in a trial where other texts open; nothing takes back what was said. */
+  function say(name, more = "") {
     if (!shown || !marks.acts) return undefined;
     if (!name) return Reason.hide();
     const does = [...root.querySelectorAll(DOES)].find((made) => made.checkVisibility({ visibilityProperty: true }));
-    return Reason.say(scene.words[name], does, shown.stage === "running" ? parts.free : undefined, root, { room, put, replay, text });
+    return Reason.say(scene.words[name] + more, does, shown.stage === "running" ? parts.free : undefined, root, { room, put, replay, text });
   }
 
   /** What was pressed does nothing, or, where it is one of the kitchen's buttons, nothing yet. */

@@ -8,8 +8,9 @@ const Upright = (wall, fontFamily, ratio) => {
   // Height of a name above its place; sizes of names and words; least and most height of what is touched; height of orders, as a share of it;
   // height for recipes and texts on the least high stage, what they have more as such a share, and of a higher one as a share of what it has more.
   const NAME = 2.1, WORDS = 1.6, TOUCH = [5.8, 12], ORDER = 1.35, TEXTS = [1.8, 1.4, 0.15];
-  // Room below what is touched, height of the title of the robot's side, and width of the robot's hand beside something.
-  const INNER = 1.1, TITLE = 2.7, HAND = 6.2;
+  // Room below what is touched, height of the title of the robot's side, and width of the robot's hand beside something; room that the card of a lesson leaves
+  // below the orders for the line that says why a press there has no effect.
+  const INNER = 1.1, TITLE = 2.7, HAND = 6.2, REASON = 1.9;
   // Width of a place, as a share of its height, of which names and buttons leave less; its least width; room beside it towards the middle, where the robot's hand stands;
   // room beside the words of a button, between buttons, and between a button and a place or its name, around which a frame can go.
   const FLAT = 1.4, PLACE = 9.6, ASIDE = 3.3, PAD = 1, APART = 0.5, FRAMED = 1.6;
@@ -143,7 +144,7 @@ const Upright = (wall, fontFamily, ratio) => {
 
   /** Where a text of the tutorial stands: below the orders and over the robot's side; where nothing is pressed, rather over the person's side or over the places. */
   function forLesson(shows, page) {
-    const above = [free[0], free[1], free[2], zones.theirs[1] + zones.theirs[3] - free[1]];
+    const from = free[1] + (page.presses ? REASON / high : 0), above = [free[0], from, free[2], zones.theirs[1] + zones.theirs[3] - from];
     return Room.leastHidden(page.presses ? [above, zones.places] : [zones.mine, zones.places, above], Room.isAbout(placed, { robot: zones.theirs, human: zones.mine, table: zones.places }, shows, page));
   }
 

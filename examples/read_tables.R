@@ -6,6 +6,9 @@
 
 folder <- commandArgs(trailingOnly = TRUE)[1]
 if (is.na(folder)) stop("usage: Rscript read_tables.R sessions/study")
+if (!file.exists(file.path(folder, "trials.csv"))) {
+  stop(folder, " has no trials.csv: name the folder with the tables, such as ", folder, "/study", call. = FALSE)
+}
 trials <- read.csv(file.path(folder, "trials.csv"), na.strings = "", stringsAsFactors = FALSE)
 actions <- read.csv(file.path(folder, "actions.csv"), na.strings = "", stringsAsFactors = FALSE)
 

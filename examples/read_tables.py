@@ -15,6 +15,8 @@ except ModuleNotFoundError as missing:
 
 
 def main(folder):
+    if not (Path(folder) / "trials.csv").exists():
+        sys.exit(f"{folder} has no trials.csv: name the folder with the tables, such as {folder}/study")
     trials = pandas.read_csv(Path(folder) / "trials.csv")
     actions = pandas.read_csv(Path(folder) / "actions.csv", dtype={"cause": str})
     counted = trials[trials["counts"].astype(str).str.lower().isin(("true", "1"))]

@@ -205,6 +205,9 @@ fn kitchen(args: &KitchenArgs) -> Result<(), Failure> {
     print(args.format, &figures, || kitchen_summary::describe(&kitchen, &figures))
 }
 
+/// What an exclusion does not change.
+const MADE_BEFORE: &str = "tables, reports and exports that were made before do not know of this: make them again\n";
+
 fn exclude(args: &ExcludeArgs) -> Result<(), Failure> {
     let reason = args.reason.as_deref().unwrap_or_default();
     if let Some(code) = &args.code {
@@ -221,6 +224,7 @@ fn exclude(args: &ExcludeArgs) -> Result<(), Failure> {
             "is not excluded any more, but is still left out of the analysis, since its trial was aborted: {reason}"
         ),
     };
+    put_aside(MADE_BEFORE);
     print(args.format, &ruling, || format!("{} {words}\n", recording.display()))
 }
 
@@ -230,7 +234,8 @@ fn exclude_participant(args: &ExcludeArgs, code: &str, reason: &str) -> Result<(
     let (mut ruled, mut left) = (Vec::new(), Vec::new());
     for recording in list::of_participant(&args.recording, code)? {
         let log = &mut LogReader::open(&recording)?;
-        if log::is_excluded(log)? != args.back {
+        // The log of a damaged recording does not say that it is excluded.
+        if log::is_excluded(log).unwrap_or(false) != args.back {
             continue;
         }
         // What was excluded by itself, at the console or by name, is excluded for another reason, which still holds.
@@ -246,6 +251,9 @@ fn exclude_participant(args: &ExcludeArgs, code: &str, reason: &str) -> Result<(
         put_aside(&format!(
             "{recording} stays excluded, since it was excluded by itself; tomcom exclude {recording} --back includes it\n"
         ));
+    }
+    if !ruled.is_empty() {
+        put_aside(MADE_BEFORE);
     }
     let words = match (args.back, ruled.len()) {
         (false, 0) => format!("all recordings of {code} are excluded already"),

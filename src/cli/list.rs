@@ -35,7 +35,7 @@ pub(super) struct ListArgs {
     /// A folder with recordings in it.
     #[arg(value_name = "DIR", default_value = DEFAULT_OUT)]
     folder: PathBuf,
-    /// Only the recordings whose line has all of these words, such as P07 or excluded.
+    /// Only the recordings whose line has all of these words, such as P07 (that participant alone) or excluded.
     #[arg(value_name = "WORD")]
     words: Vec<String>,
     /// Output format.
@@ -49,8 +49,15 @@ pub(super) fn list(args: &ListArgs) -> Result<(), Failure> {
     let begun = |number: usize| bar.set_length(number as u64);
     let (mut list, _) = recording_list::list(&args.folder, RecordingListDetail::WithErrors, begun, || bar.inc(1))?;
     bar.finish_and_clear();
-    let has =
-        |one: &ListedRecording, word: &String| one.cells().join(" ").to_lowercase().contains(&word.to_lowercase());
+    let is_of =
+        |one: &ListedRecording, word: &str| one.code.as_ref().is_some_and(|code| code.eq_ignore_ascii_case(word));
+    // The folder of a recording whose code was corrected still names another participant.
+    let codes: BTreeSet<&String> =
+        args.words.iter().filter(|word| list.recordings.iter().any(|one| is_of(one, word))).collect();
+    let has = |one: &ListedRecording, word: &String| match codes.contains(word) {
+        true => is_of(one, word),
+        false => one.words().to_lowercase().contains(&word.to_lowercase()),
+    };
     for word in args.words.iter().filter(|word| !list.recordings.iter().any(|one| has(one, word))) {
         put_aside(&format!("no recording in {} has \"{word}\" in its line\n", args.folder.display()));
     }

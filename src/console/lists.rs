@@ -383,10 +383,14 @@ pub fn actions<'a>(model: &'a ConsoleModel, cursor: &ListCursor) -> Vec<&'a KeyB
     found
 }
 
-/// The events of a replay whose words match what is typed to its palette, with the action that goes there.
+/// The events of a replay whose words match what is typed to its palette, with the action that goes there; their times only
+/// match a time.
 pub fn events<'a>(model: &'a ConsoleModel, cursor: &ListCursor) -> Vec<&'a (ReplayAction, String)> {
     let Some(playback) = model.playback.as_ref().filter(|_| cursor.filter.len() > 1) else { return Vec::new() };
-    let found = cursor.found(playback.told.iter().map(|(_, words)| words.clone()));
+    let timeless = |words: &str| words.trim_start().split_once(' ').map_or(words, |(_, rest)| rest).to_string();
+    let is_time = cursor.filter.contains(':');
+    let found =
+        cursor.found(playback.told.iter().map(|(_, words)| if is_time { words.clone() } else { timeless(words) }));
     found.into_iter().map(|index| &playback.told[index]).collect()
 }
 

@@ -1,6 +1,7 @@
 //! Command `tomcom review`: opens recordings in the Rerun viewer, from the stream file beside the log or rebuilt from
 //! the log.
 
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
@@ -12,6 +13,7 @@ use tempfile::TempPath;
 use crate::run::terminal::asked_to_end;
 use tomcom_core::base::text::printable;
 use tomcom_core::base::time::SessionTime;
+use tomcom_core::measures::attribution::ErrorCause;
 use tomcom_core::measures::raters::{CodableErrors, ErrorCauseCode, RaterCodes};
 use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_devices::rerun::{FilmFrame, RerunWriter, ShownRecording, StreamIdentity, StreamOutlets, WebViewer};
@@ -92,13 +94,15 @@ pub struct RerunReviewRequest {
 }
 
 /// A file with the Rerun stream of recordings, and whether the file had to be rebuilt.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Debug)]
 pub struct RerunStreamFile {
     pub path: PathBuf,
     /// Whether the file was just rebuilt from the log.
     pub made: bool,
     /// Why an existing stream file was not used.
     pub because: Option<&'static str>,
+    /// Removes a file in the folder for temporary files when it is dropped.
+    temporary: Option<TempPath>,
 }
 
 /// A recording that is still being written.
@@ -167,7 +171,10 @@ pub fn review(asked: &RerunReviewRequest, tell: &dyn Fn(u64, u64)) -> Result<Rer
             Ok(RerunReviewOutcome::Saved(saved(&asked.recordings, place, tell)?))
         }
         (None, ViewerAvailability::Ready(viewer)) => {
-            let file = saved(&asked.recordings, StreamPlace::Anywhere, tell)?;
+            let mut file = saved(&asked.recordings, StreamPlace::Anywhere, tell)?;
+            if let Some(temporary) = file.temporary.take() {
+                file.path = keep(temporary, &asked.recordings)?;
+            }
             let opened = viewer::open(&viewer, &file.path, asked.at.map(|at| at.0));
             opened.map_err(|reason| RerunViewerError::Viewer { path: viewer, reason })?;
             Ok(RerunReviewOutcome::Opened(file))
@@ -252,7 +259,7 @@ fn saved(
             let path = folder.join(RRD_NAME);
             let state = rrd::state(&path, &parts).unwrap_or(RerunFileState::Unsealed);
             if state == RerunFileState::Whole {
-                return Ok(RerunStreamFile { path, made: false, because: None });
+                return Ok(RerunStreamFile { path, made: false, because: None, temporary });
             }
             match (RecordingLock::take(&folder), place) {
                 (Ok(lock), _) => {
@@ -278,9 +285,8 @@ fn saved(
     let sealed =
         put(recordings, &path, with_films, tell)?.and_then(|()| logs.map_or(Ok(()), |logs| rrd::seal(&path, &logs)));
     drop(locked);
-    let kept = |()| temporary.map_or(Ok(()), |path| path.keep().map(drop).map_err(io::Error::from));
-    match sealed.and_then(kept) {
-        Ok(()) => Ok(RerunStreamFile { path, made: true, because }),
+    match sealed {
+        Ok(()) => Ok(RerunStreamFile { path, made: true, because, temporary }),
         Err(reason) => Err(RerunViewerError::Unwritable { path, reason }),
     }
 }
@@ -315,13 +321,32 @@ fn put(
 /// Creates an empty file for a stream in the system's folder for temporary files, which only the user of the program can
 /// read. It is removed again if it is not kept.
 fn elsewhere(recordings: &[PathBuf]) -> Result<TempPath, RerunViewerError> {
-    let names: Vec<String> = recordings.iter().map(|recording| name(recording)).collect();
-    // A file name has at most 255 bytes on most systems.
-    let names: String = names.join("-and-").chars().take(NAMED).collect();
-    let prefix = format!("tomcom-{names}-");
+    let prefix = temporary_name(recordings);
     let made = tempfile::Builder::new().prefix(&prefix).suffix(".rrd").tempfile();
     let path = std::env::temp_dir().join(prefix);
     Ok(made.map_err(|reason| RerunViewerError::Unwritable { path, reason })?.into_temp_path())
+}
+
+/// Keeps a temporary stream file for a viewer that reads it when this program is over. The next one of the same recordings
+/// replaces it.
+fn keep(temporary: TempPath, recordings: &[PathBuf]) -> Result<PathBuf, RerunViewerError> {
+    let mut hasher = DefaultHasher::new();
+    for recording in recordings {
+        recording.canonicalize().unwrap_or_else(|_| recording.clone()).hash(&mut hasher);
+    }
+    let path = std::env::temp_dir().join(format!("{}{:016x}.rrd", temporary_name(recordings), hasher.finish()));
+    check_foreign(&path)?;
+    match temporary.persist(&path) {
+        Ok(()) => Ok(path),
+        Err(failed) => Err(RerunViewerError::Unwritable { path, reason: failed.error }),
+    }
+}
+
+/// Beginning of a temporary stream file's name.
+fn temporary_name(recordings: &[PathBuf]) -> String {
+    let names: Vec<String> = recordings.iter().map(|recording| name(recording)).collect();
+    // A file name has at most 255 bytes on most systems.
+    format!("tomcom-{}-", names.join("-and-").chars().take(NAMED).collect::<String>())
 }
 
 fn name(recording: &Path) -> String {
@@ -474,6 +499,12 @@ pub fn landmarks(recording: &Path, kinds: &[ReplayLandmark]) -> FileResult<Vec<R
             let mut fields = json!(listed);
             fields["why"] = json!(error.why);
             fields["cause"] = json!(error.cause);
+            let targets = match press.cause {
+                Some(ErrorCause::Belief { target, with, .. }) => [Some(target), with],
+                _ => [None, None],
+            };
+            let aspects = targets.into_iter().flatten().flat_map(|target| target.aspects(kitchen));
+            fields["cause_aspects"] = aspects.map(|aspect| kitchen.aspects[aspect.index()].name.as_str()).collect();
             fields["cost_presses"] = json!(press.verdict.excess);
             fields["believed_wrong"] = json!(believed);
             let code = |code: &ErrorCauseCode| json!({ "cause": code.kind(), "aspect": code.aspect() });
@@ -492,7 +523,7 @@ pub fn landmarks(recording: &Path, kinds: &[ReplayLandmark]) -> FileResult<Vec<R
                 "by": shown.by,
                 "signal": shown.signal,
                 "location": shown.signal.target(),
-                "looked_at_s": shown.seen.map(clock_s),
+                "looked_at_after_s": shown.seen.map(|seen| session.age(shown.time, seen).as_secs_f64()),
                 "verdict": verdicts.as_ref().map(|verdicts| verdicts[nth].name()),
                 "reason": shown.reason,
                 "value": shown.worth,

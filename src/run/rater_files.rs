@@ -65,10 +65,14 @@ pub(super) fn of_pair(film: &SeekableReplay, raters: [&str; 2]) -> Result<RaterS
 /// errors were settled.
 pub(super) fn opening_words(session: &RaterSession) -> String {
     let name = session.name();
-    let begins = match session.first_open() {
-        None => return format!("{name}: {}", session.next_step().unwrap_or_default()),
-        Some(open) => format!("error {} is the first without a code", session.errors[open].error),
+    let Some(open) = session.first_open() else {
+        return format!("{name}: {}", session.next_step().unwrap_or_default());
     };
+    let first = match session.party {
+        CodingRaters::Pair { .. } => "to be settled",
+        CodingRaters::Rater(_) => "without a code",
+    };
+    let begins = format!("error {} is the first {first}", session.errors[open].error);
     let reopened = match &session.party {
         CodingRaters::Pair { consensus, own } => consensus.changed(own.each_ref()),
         CodingRaters::Rater(_) => Vec::new(),

@@ -75,18 +75,26 @@ fn read_or_tell(
     cost: &mut KeptCost,
     cache: &ListCache,
 ) -> (ListedRecording, NewFigures) {
-    let unreadable = |error: FileError| ListedRecording {
-        recording: name(path),
-        code: None,
-        condition: None,
-        arm: None,
-        date: None,
-        trial_s: None,
-        errors: None,
-        kind: None,
-        place: None,
-        state: RecordingState::Unreadable,
-        reason: Some(error.with_remedy()),
+    let unreadable = |error: FileError| {
+        // A ruling that cannot be read either is no exclusion.
+        let standing = standing::with_ruling(ExclusionStatus::default(), path).unwrap_or_default();
+        let (state, reason) = match standing.counts() {
+            true => (RecordingState::Unreadable, error.with_remedy()),
+            false => (RecordingState::Excluded, format!("{}; unreadable: {error}", standing.describe())),
+        };
+        ListedRecording {
+            recording: name(path),
+            code: LogReader::open(path).ok().map(|log| log.header.session.participant.code),
+            condition: None,
+            arm: None,
+            date: None,
+            trial_s: None,
+            errors: None,
+            kind: None,
+            place: None,
+            state,
+            reason: Some(reason),
+        }
     };
     let glance = ClosedLogHeader::read(path);
     if let Some(glance) = &glance

@@ -103,6 +103,8 @@ pub struct SeekableReplay {
     read_to: SessionTime,
     /// Events that are neither gaze or arm samples nor hidden from raters.
     steps: Vec<Step>,
+    /// What was advised, in words.
+    advised: Vec<(SessionTime, String)>,
     /// The chunk with this index that was read again last, with its events.
     loaded: Option<(usize, Vec<TimestampedEvent>)>,
     /// Why a chunk could not be read again.
@@ -150,6 +152,7 @@ impl SeekableReplay {
             chunks: Vec::new(),
             read_to: SessionTime::ZERO,
             steps: Vec::new(),
+            advised: Vec::new(),
             loaded: None,
             trouble: None,
             is_blinded: false,
@@ -216,6 +219,10 @@ impl SeekableReplay {
             self.estimated_after.push(index + 1);
         }
         self.read_to = stamped.time;
+        if matches!(stamped.event, Event::Advised(_)) {
+            let words = event_words::words(&stamped, &self.replay.follower);
+            self.advised.extend(words.map(|words| (stamped.time, words)));
+        }
         self.steps.extend(Step::at(index, &stamped).filter(|step| !self.is_blinded || step.is_shown_to_raters));
         match self.chunks.last_mut().filter(|last| last.number < CHUNK && last.place.is_in_file_of(&place)) {
             Some(last) => last.number += 1,
@@ -426,25 +433,37 @@ impl SeekableReplay {
         Some(event_words::step_words(stamped, &self.replay.follower))
     }
 
-    /// The events of the list of events in words, with the trial's clock and of errors the reason, as far as the recording
-    /// was read, each with the action that goes there; none for raters, who would read signals.
+    /// The events of the list of events, advice and estimated false beliefs in words, with the trial's clock and of errors the
+    /// reason, as far as the recording was read, each with the action that goes there; none for raters, who would read signals.
     pub fn told_events(&self) -> Vec<(ReplayAction, String)> {
         let session = self.replay.session();
-        let told = |entry: &TimelineEntry| {
-            let (who, what) = event_words::happening(&session.kitchen, &entry.what);
-            let is_human = matches!(entry.what, TimelineEvent::Press { agent: Agent::Human, .. });
-            let error = self.errors.binary_search_by_key(&entry.time, |error| error.time).ok().filter(|_| is_human);
-            let (to, why) = match error {
-                Some(index) => {
-                    let number = index + 1;
-                    (ReplayAction::ToNth(ReplayLandmark::Error, number), format!("; {}", self.errors[index].why))
-                }
-                None => (ReplayAction::ToTime(entry.time), String::new()),
-            };
-            let clock = session.trial_clock_at(entry.time).with_tenths();
-            (to, format!("{clock:>7}  {who}{}{what}{why}", if who.is_empty() { "" } else { " " }))
+        if self.is_blinded {
+            return Vec::new();
+        }
+        let happened = session.timeline.iter().map(|entry: &TimelineEntry| {
+            let (who, mut what) = event_words::happening(&session.kitchen, &entry.what);
+            let mut to = ReplayAction::ToTime(entry.time);
+            let error = self.errors.binary_search_by_key(&entry.time, |error| error.time).ok();
+            if let (Some(index), TimelineEvent::Press { agent: Agent::Human, no_effect, .. }) = (error, &entry.what) {
+                let (number, error) = (index + 1, &self.errors[index]);
+                to = ReplayAction::ToNth(ReplayLandmark::Error, number);
+                // The reason says why a press had no effect.
+                let pressed = if no_effect.is_some() { &error.press } else { &what };
+                what = format!("{pressed}; error {number}: {}", error.why);
+            }
+            (entry.time, to, format!("{who}{}{what}", if who.is_empty() { "" } else { " " }))
+        });
+        let advised = self.advised.iter().map(|(time, words)| (*time, ReplayAction::ToTime(*time), words.clone()));
+        let believed = self.false_beliefs().zip(1..).map(|(one, number)| {
+            let (what, name) = (ReplayLandmark::FalseBelief, ReplayLandmark::FalseBelief.name());
+            (one.began, ReplayAction::ToNth(what, number), format!("{name} {number}: {}", one.whole(session)))
+        });
+        let mut all: Vec<(SessionTime, ReplayAction, String)> = happened.chain(advised).chain(believed).collect();
+        all.sort_by_key(|(time, ..)| *time);
+        let told = |(time, to, words): (SessionTime, ReplayAction, String)| {
+            (to, format!("{:>7}  {words}", session.trial_clock_at(time).with_tenths()))
         };
-        if self.is_blinded { Vec::new() } else { session.timeline.iter().map(told).collect() }
+        all.into_iter().map(told).collect()
     }
 
     /// What the landmark of this kind is at which the replay stands.

@@ -380,30 +380,32 @@ pub(super) fn slot_name(progress: &ParticipantProgress, slot: usize) -> String {
 /// Progress of a participant through the study plan, in one line. `operate`: the command that records the participant.
 pub(super) fn stands(progress: &ParticipantProgress, operate: &str) -> String {
     let (code, done, all) = (&progress.code, progress.done(), progress.steps.len());
-    let excluded = match progress.excluded().count() {
-        0 => String::new(),
-        excluded => format!(", {excluded} excluded: repeat with {operate}"),
+    let (out, again) = match progress.excluded().count() {
+        0 => (String::new(), String::new()),
+        out => (format!(" ({out} of them excluded)"), format!(", {out} excluded: repeat with {operate}")),
     };
-    let stand = match &progress.next {
+    match &progress.next {
         NextRecording::Finished if !progress.has_counting_trial() => {
-            format!("{code}: nothing counts, since every trial is excluded")
+            format!("{code}: nothing counts, since every trial is excluded{again}")
         }
-        NextRecording::Finished => format!("{code}: everything is done"),
+        NextRecording::Finished => format!("{code}: everything is done{again}"),
         NextRecording::Begin { slot, attempt: 1 } => {
-            format!("{code}: {done} of {all} done, next: {}", slot_name(progress, *slot))
+            format!("{code}: {done} of {all} done{out}, next: {}", slot_name(progress, *slot))
         }
         NextRecording::Begin { slot, attempt } => {
-            format!("{code}: {done} of {all} done, next: {} again (attempt {attempt})", slot_name(progress, *slot))
+            format!("{code}: {done} of {all} done{out}, next: {} again (attempt {attempt})", slot_name(progress, *slot))
         }
         NextRecording::Choose { slot, recording, .. } => {
             let slot = slot_name(progress, *slot);
-            format!("{code}: {done} of {all} done, {slot} is unfinished in {recording}: go on with {operate}")
+            format!("{code}: {done} of {all} done{out}, {slot} is unfinished in {recording}: go on with {operate}")
         }
         NextRecording::Running { slot, recording } => {
-            format!("{code}: {done} of {all} done, {} is being recorded in {recording}", slot_name(progress, *slot))
+            format!(
+                "{code}: {done} of {all} done{out}, {} is being recorded in {recording}",
+                slot_name(progress, *slot)
+            )
         }
-    };
-    stand + &excluded
+    }
 }
 
 /// The command that records a participant of a plan. `kind`: that of the participant, if not the session file's; an

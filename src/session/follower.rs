@@ -5,7 +5,10 @@ use std::collections::BTreeMap;
 
 use crate::apply::{ApplyError, apply};
 use crate::external::happenings::Happenings;
-use crate::history::false_beliefs::{self, EstimatedFalseBeliefs, FalseBeliefsBefore, HeldFalseBelief};
+use crate::history::false_beliefs::{
+    self, EstimatedFalseBeliefs, FalseBeliefsBefore, HeldFalseBelief, OwnFalseBeliefs,
+};
+use crate::history::signal_words;
 use crate::probes::{ProbeEvent, ProbeSubject, StartedProbe};
 use crate::tracker::TrackerEvent;
 use crate::wizard_log::WizardLog;
@@ -14,7 +17,7 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::Signal;
 use tomcom_core::communication::signal::SignalRepeatRule;
 use tomcom_core::kitchen::cost_to_go::CostToGo;
-use tomcom_core::kitchen::{Agent, AspectId, Kitchen, KitchenChange, Press, State};
+use tomcom_core::kitchen::{Agent, Kitchen, KitchenChange, Press, State};
 use tomcom_core::measures::JudgedPress;
 use tomcom_core::measures::attribution::{ErrorAttributor, ErrorCause};
 use tomcom_core::measures::errors::PressJudge;
@@ -33,6 +36,7 @@ pub struct SessionFollower {
     pub judged: Vec<JudgedPress>,
     /// As far as the participant's beliefs are known.
     pub episodes: FalseBeliefTracker,
+    own_false_beliefs: OwnFalseBeliefs,
     pub filter: BeliefFilter,
     pub false_beliefs: EstimatedFalseBeliefs,
     pub repeats: SignalRepeatRule,
@@ -55,7 +59,7 @@ pub struct SessionFollower {
     pub estimated: Option<PressBeliefEstimate>,
     /// At the beginning of the last freeze probe.
     pub probed: Option<ProbedEstimate>,
-    /// What was believed wrong before each error, by the time of the press.
+    /// What was believed wrong and advised before each error, by the time of the press.
     believed_wrong: BTreeMap<SessionTime, FalseBeliefsBefore>,
     /// What the next question tells an external concept; `None` without one.
     pub(crate) happenings: Option<Happenings>,
@@ -115,6 +119,7 @@ impl SessionFollower {
             session,
             judged: Vec::new(),
             episodes: FalseBeliefTracker::default(),
+            own_false_beliefs: OwnFalseBeliefs::default(),
             filter,
             false_beliefs: EstimatedFalseBeliefs::default(),
             repeats: SignalRepeatRule::default(),
@@ -158,6 +163,7 @@ impl SessionFollower {
                 if let Some(belief) = &self.belief {
                     let (now, changed_at) = (stamped.time, &session.changed_at);
                     self.episodes.believed(&session.kitchen, now, session.state, belief, changed_at);
+                    self.own_false_beliefs.note(session, now, belief, &self.episodes);
                 }
             }
             (_, KitchenChange::Press { press, .. }) => match press.agent {
@@ -329,15 +335,14 @@ impl SessionFollower {
         }
         if verdict.error {
             let about = false_beliefs::aspects_of(&kitchen, press, cause);
-            let held =
-                |aspect: AspectId| self.episodes.all().find(|one| one.aspect == aspect && one.corrected.is_none());
-            let since = |aspect| held(aspect).map(|one| one.began).filter(|began| *began < stamped.time);
+            let since = |aspect| self.own_false_beliefs.began(aspect).filter(|began| *began < stamped.time);
             let own = |belief: &Belief| {
                 let values = |aspect| belief.distribution(aspect);
                 HeldFalseBelief::among(&self.session, press.before, &about, values, since)
             };
             let participant = belief.as_ref().map(own).unwrap_or_default();
-            let found = FalseBeliefsBefore { participant, estimate: Vec::new() };
+            let none_advised = signal_words::none_advised(&self.session);
+            let found = FalseBeliefsBefore { participant, none_advised, ..FalseBeliefsBefore::default() };
             self.believed_wrong.insert(stamped.time, found);
         }
         let belief_known = belief.is_some();

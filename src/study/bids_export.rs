@@ -33,8 +33,8 @@ pub struct BidsSummary {
     pub folder: PathText,
     pub changed_codes: Vec<(String, String)>,
     pub copies: Vec<RecordingCopy>,
-    /// Recordings of no plan beside those of a plan, simulated ones beside those of people, and those that are still being
-    /// written, which are left out.
+    /// Recordings of no plan beside those of a plan, simulated ones beside those of people, those that are still being
+    /// written, and excluded ones that cannot be read, which are left out.
     pub foreign: Vec<ForeignRecording>,
     pub recordings: Vec<BidsRecording>,
     pub questionnaires: usize,
@@ -59,7 +59,7 @@ struct Planned {
 }
 
 /// Exports these recordings into a new folder. `with_words`: whether text that wizards and participants typed is
-/// exported, too. `done` is called after each recording. Errors: a recording cannot be read, all are still being written,
+/// exported, too. `done` is called after each recording. Errors: a recording cannot be read, all are left out,
 /// or the data set cannot be written.
 pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: impl Fn()) -> FileResult<BidsSummary> {
     let GatheredRecordings { paths, copies, mut foreign, .. } =
@@ -69,16 +69,24 @@ pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: imp
         let log = LogReader::open(&path)?;
         match log.ending() {
             LogEnding::Running => {
-                foreign.push(ForeignRecording { reason: ForeignReason::Running, recording: name(&path) });
+                let (reason, recording) = (ForeignReason::Running, name(&path));
+                foreign.push(ForeignRecording { reason, recording, excluded: None });
             }
-            _ => whole.push((path, log.header)),
+            _ => {
+                // Onsets count from the beginning of the first part.
+                let started = match &log.logs()[..] {
+                    [first, _, ..] => LogReader::open(first)?.header.started,
+                    _ => log.header.started.clone(),
+                };
+                whole.push((path, LogHeader { started, ..log.header }));
+            }
         }
     }
     foreign.sort();
-    if let Some(running) = foreign.iter().find(|one| one.reason == ForeignReason::Running && whole.is_empty()) {
-        let remedy = "a recording whose session is over".to_string();
-        let found = "a recording that is still being written".to_string();
-        return Err(FileError::from_finding(Path::new(&running.recording), found, remedy));
+    if let Some(first) = foreign.first().filter(|_| whole.is_empty()) {
+        let remedy = "a recording whose session is over, and that can be read".to_string();
+        let found = format!("a recording that is {}", first.reason.words());
+        return Err(FileError::from_finding(Path::new(&first.recording), found, remedy));
     }
     let labels = BidsLabelMap::from_names(whole.iter().map(|(_, header)| header.session.participant.code.as_str()));
     let planned = places(whole, &labels);

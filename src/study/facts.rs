@@ -20,9 +20,7 @@ impl RecordingFacts {
     pub fn from_session(header: &LogHeader, session: &Session) -> RecordingFacts {
         let spec = &header.session;
         let mut facts = RecordingFacts::default();
-        let mut is = |key: &'static str, value: String| {
-            facts.found.entry(key.to_string()).or_default().insert(value);
-        };
+        let mut is = |key: &'static str, value: String| facts.note(key, value);
         is("program", header.program.clone());
         is("format", header.version.to_string());
         is("kitchen", session.kitchen.title.clone());
@@ -69,6 +67,13 @@ impl RecordingFacts {
             is("accuracy", format!("{:.1}", check.accuracy_deg()));
         }
         facts
+    }
+
+    /// Name of the circumstance that raters coded errors of a simulated participant.
+    pub const UNUSED_CODES: &str = "unused codes";
+
+    pub(crate) fn note(&mut self, key: &str, value: String) {
+        self.found.entry(key.to_string()).or_default().insert(value);
     }
 
     pub fn add(&mut self, other: RecordingFacts) {

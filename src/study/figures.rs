@@ -108,6 +108,9 @@ pub struct StudySummary {
     pub rater_pairs: BTreeMap<String, u64>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub identical_codes: Vec<IdenticalCodes>,
+    /// Recordings of simulated participants whose errors raters coded, by name; absent if there are none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unused_codes: Option<String>,
     pub shared_beliefs: Option<RaterFalseBeliefAgreement>,
     /// Number of trials whose causes of errors are the consensus of two raters, by pair of raters ("R1+R2").
     pub consensus: BTreeMap<String, u64>,
@@ -235,6 +238,7 @@ impl StudySummary {
             tutorial: None,
             probes: ProbeSummary::from_trials(details.probes.iter().map(|(code, probes)| (code.as_str(), probes))),
             raters: agreement(&counting),
+            unused_codes: facts.all(RecordingFacts::UNUSED_CODES),
             shared_beliefs: counting.iter().filter_map(|trial| trial.shared_beliefs).reduce(|sum, one| sum.plus(one)),
             rater_pairs: counts(counting.iter().filter_map(|trial| Some(trial.raters.as_ref()?.name()))),
             identical_codes: counting.iter().filter_map(|trial| identical_codes(trial)).collect(),

@@ -10,8 +10,11 @@ use std::path::{Path, PathBuf};
 
 use crate::files::recordings;
 use crate::frozen_plan::RecordedPlan;
-use crate::planned_trial::{ForeignReason, ForeignRecording, PlannedTrialKey, RecordingCopy, copy_with_codes};
+use crate::planned_trial::{
+    ForeignReason, ForeignRecording, NAMED, PlannedTrialKey, RecordingCopy, copy_with_codes, named,
+};
 use crate::{parallel, standing};
+use tomcom_core::base::text::count;
 use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::log::{LOG_NAME, LogReader, SameLogs, code_files, differing_codes, header_digest, ruling};
 use tomcom_session::person_code;
@@ -24,7 +27,7 @@ pub struct GatheredRecordings {
     /// In the order of `paths`.
     pub places: Vec<GatheredPlace>,
     pub copies: Vec<RecordingCopy>,
-    /// What [`GatheredRecordings::without_foreign`] left out, sorted.
+    /// Excluded recordings that cannot be read, and what [`GatheredRecordings::without_foreign`] left out, sorted.
     pub foreign: Vec<ForeignRecording>,
 }
 
@@ -54,8 +57,8 @@ impl GatheredRecordings {
     /// Finds the recordings at these paths: recordings, their logs, or folders of recordings. A recording to which
     /// several paths lead is there once, and so is a recording whose log equals that of another one or a beginning of
     /// it: the longest counts, but none that is excluded before one that is not. Earlier parts of a recording are read
-    /// with the last part. Errors: a path is neither a recording nor a folder with recordings; a recording has no
-    /// readable header; two recordings count for one trial of a plan, or a live and a simulated one for
+    /// with the last part. An excluded recording that cannot be read is left out. Errors: a path is neither a recording nor
+    /// a folder with recordings; a recording has no readable header; two recordings count for one trial of a plan, or a live and a simulated one for
     /// one participant of it; the codes of two participants differ in capital
     /// letters only; or codes of raters, or a correction, stand beside a copy alone.
     pub fn find(paths: &[PathBuf]) -> FileResult<GatheredRecordings> {
@@ -65,8 +68,12 @@ impl GatheredRecordings {
             let is_folder = path.is_dir() && !path.join(LOG_NAME).exists();
             found.extend(if is_folder { recordings::of_folder(path)? } else { vec![path.clone()] });
         }
-        let opened = parallel::each(&found, |path| FoundRecording::open(path), || ());
-        let opened = opened.into_iter().collect::<FileResult<Vec<_>>>()?;
+        let damaged = parallel::each(&found, |path| excluded_and_damaged(path), || ());
+        let damaged = damaged.into_iter().collect::<FileResult<Vec<_>>>()?;
+        let mut is_whole = damaged.iter().map(Option::is_none);
+        found.retain(|_| is_whole.next().unwrap_or(true));
+        let foreign = damaged.into_iter().flatten().collect();
+        let opened = whole(parallel::each(&found, |path| FoundRecording::open(path), || ()))?;
         // The recording that counts must not depend on the order of the paths.
         let mut order: Vec<usize> = (0..opened.len()).collect();
         order.sort_by_key(|&index| (found[index].file_name(), &found[index]));
@@ -151,7 +158,7 @@ impl GatheredRecordings {
         let places = kept.iter().map(|&index| opened[index].place.clone()).collect();
         let paths = kept.into_iter().map(|index| opened[index].path.clone()).collect();
         let copies = order.iter().filter_map(|index| copies.remove(index)).collect();
-        Ok(GatheredRecordings { paths, places, copies, foreign: Vec::new() })
+        Ok(GatheredRecordings { paths, places, copies, foreign })
     }
 
     /// Without the recordings of no plan beside those of a plan, and without simulated ones beside those of people. `plans`:
@@ -177,7 +184,7 @@ impl GatheredRecordings {
                 // The user names the plans that are meant.
                 (false, Some(_)) => continue,
             };
-            foreign.push(ForeignRecording { reason, recording: name(&path) });
+            foreign.push(ForeignRecording { reason, recording: name(&path), excluded: None });
         }
         foreign.sort();
         GatheredRecordings { paths: kept.0, places: kept.1, copies, foreign }
@@ -245,6 +252,25 @@ impl FoundRecording {
         }
         Ok(RecordingCopy { recording, copy_of, left_out })
     }
+}
+
+/// The recording at this path if it is excluded and cannot be read.
+fn excluded_and_damaged(path: &Path) -> FileResult<Option<ForeignRecording>> {
+    let beside = if path.is_dir() { path } else { path.parent().unwrap_or(path) };
+    let ruling = ruling(beside)?.filter(|ruling| ruling.excluded && standing::left_out(path).is_err());
+    let foreign =
+        |reason| ForeignRecording { reason: ForeignReason::Damaged, recording: name(path), excluded: Some(reason) };
+    Ok(ruling.map(|ruling| foreign(ruling.reason)))
+}
+
+/// What was read of recordings. Errors: at least one could not be read; the error names all of these.
+pub(crate) fn whole<T>(read: Vec<FileResult<T>>) -> FileResult<Vec<T>> {
+    let wrong: Vec<&FileError> = read.iter().filter_map(|one| one.as_ref().err()).collect();
+    let [first, _, ..] = wrong[..] else { return read.into_iter().collect() };
+    let words: Vec<String> = wrong.iter().map(|error| error.to_string()).collect();
+    let found =
+        format!("{} with errors: {}", count(wrong.len() as u64, "recording", "recordings"), named(&words, NAMED));
+    Err(FileError::from_finding(Path::new("the recordings"), found, first.remedy()))
 }
 
 /// The name of a recording's folder.

@@ -181,6 +181,16 @@ pub fn doubts(found: &StudyArmComparison) -> Vec<String> {
 fn contrast(found: &StudyArmComparison, one: &StudyArmContrast) -> String {
     let ([low, high], contrasts) = (one.interval, found.contrasts.len());
     let (arm, against) = (one.arm.title(), one.against.title());
+    let (outcome, rates) = (found.outcome.title(), [one.against, one.arm].map(|arm| found.per_100(arm)));
+    if rates == [0.0, 0.0] {
+        return format!(
+            "Primary outcome, {outcome} per 100 presses of the human: none in {arm} and none in {against} trials."
+        );
+    }
+    let change = match format!("{:.2}", one.ratio) == "1.00" {
+        true => format!("about as many in {arm} trials as in {against} trials"),
+        false => format!("{} in {arm} trials than in {against} trials", fewer_or_more(one.ratio)),
+    };
     let corrected = match contrasts {
         2.. if !is_of_few(found, one) => format!(" ({} corrected for {contrasts} contrasts)", p_value(one.p_holm)),
         _ => String::new(),
@@ -199,13 +209,9 @@ fn contrast(found: &StudyArmComparison, one: &StudyArmContrast) -> String {
     };
     let doubted = not_reliable(found, one).map_or(String::new(), |why| format!(" ({why})"));
     format!(
-        "Primary outcome, {} per 100 presses of the human: {shown}{} in {arm} trials than in {against} trials ({in_percent}); of all presses, \
-         from {:.1} in {against} to {:.1} in {arm} trials; ratio {:.2}{doubted}{of_ratio}{corrected}.",
-        found.outcome.title(),
-        fewer_or_more(one.ratio),
-        found.per_100(one.against),
-        found.per_100(one.arm),
-        one.ratio,
+        "Primary outcome, {outcome} per 100 presses of the human: {shown}{change} ({in_percent}); of all presses, from {:.1} in {against} to \
+         {:.1} in {arm} trials; ratio {:.2}{doubted}{of_ratio}{corrected}.",
+        rates[0], rates[1], one.ratio,
     )
 }
 

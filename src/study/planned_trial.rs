@@ -79,6 +79,9 @@ pub struct RecordingCopy {
 pub struct ForeignRecording {
     pub reason: ForeignReason,
     pub recording: String,
+    /// Why it was excluded, of one that cannot be read.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub excluded: Option<String>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -90,21 +93,28 @@ pub enum ForeignReason {
     Simulated,
     /// In an export; an analysis reads how far it is.
     Running,
+    /// It cannot be read, and is excluded.
+    Damaged,
 }
 
 impl ForeignReason {
-    fn words(self) -> &'static str {
+    pub(crate) fn words(self) -> &'static str {
         match self {
             ForeignReason::NoPlan => "of no plan, beside those of a plan",
             ForeignReason::Simulated => "of a simulated participant, beside those of people",
             ForeignReason::Running => "still being written",
+            ForeignReason::Damaged => "excluded, and cannot be read",
         }
     }
 }
 
 pub fn foreign_in_words(foreign: &[ForeignRecording]) -> Option<String> {
     let group = |group: &[ForeignRecording]| {
-        let names: Vec<&str> = group.iter().map(|one| one.recording.as_str()).collect();
+        let name = |one: &ForeignRecording| {
+            let excluded = one.excluded.as_ref().map_or(String::new(), |reason| format!(" (excluded: {reason})"));
+            one.recording.clone() + &excluded
+        };
+        let names: Vec<String> = group.iter().map(name).collect();
         let are = count(group.len() as u64, "recording is", "recordings are");
         format!("{are} {}, and left out: {}", group[0].reason.words(), named(&names, NAMED))
     };

@@ -220,9 +220,11 @@ fn phases_of_a_plan_are_those_of_the_display() {
     files.spec.participant.gaze = GazeSource::Mouse;
     files.spec.display.questionnaire = AnswerDevice::Display;
     let study = files.study().expect("a plan");
-    // The second trial of somebody: trial, questionnaire, debriefing of the wizard.
+    // The second trial of somebody: trial, questionnaire, here twice, debriefing of the wizard.
     let wanted = WantedRecording { participant: 0, slot: 2, attempt: 1, instructed: true };
-    let (spec, trial) = study.settings(wanted);
+    let (mut spec, trial) = study.settings(wanted);
+    let phases = &mut spec.step.as_mut().expect("a step of the plan").phases;
+    phases.insert(2, phases[1].clone());
     let kitchen = Arc::new(files.kitchen.kitchen);
     let mut engine = SessionEngine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen.clone()));
     let give = |engine: &mut SessionEngine, event: Event| {
@@ -240,18 +242,21 @@ fn phases_of_a_plan_are_those_of_the_display() {
     assert_eq!(stage(&engine), DisplayStage::Paused);
     give(&mut engine, Event::TrialEnded { reason: TrialEndReason::Wizard });
     assert_eq!(stage(&engine), DisplayStage::Over);
-    give(&mut engine, phase(StudyPhase::Questionnaire, 2));
-    assert_eq!(stage(&engine), DisplayStage::Questionnaire);
-    let mut asked = Vec::new();
-    while let Some(item) = sight(engine.session()).question.expect("a question").item {
-        asked.push(item.clone());
-        give(&mut engine, Event::Protocol(ProtocolEvent::ItemAnswered { item, answer: 3_u8.into() }));
+    for (number, then) in [(2, DisplayStage::MoreQuestions), (3, DisplayStage::Answered)] {
+        give(&mut engine, phase(StudyPhase::Questionnaire, number));
+        assert_eq!(stage(&engine), DisplayStage::Questionnaire);
+        let mut asked = Vec::new();
+        while let Some(item) = sight(engine.session()).question.expect("a question").item {
+            asked.push(item.clone());
+            give(&mut engine, Event::Protocol(ProtocolEvent::ItemAnswered { item, answer: 3_u8.into() }));
+        }
+        let question = sight(engine.session()).question.expect("a question");
+        let is_last = question.number == question.of && asked.last() == question.before.as_ref();
+        assert!(asked.len() > 3 && is_last, "{asked:?}");
+        give(&mut engine, Event::Protocol(ProtocolEvent::AnswersConfirmed));
+        assert_eq!((sight(engine.session()).question, stage(&engine)), (None, then));
     }
-    let question = sight(engine.session()).question.expect("a question");
-    assert!(asked.len() > 3 && question.number == question.of && asked.last() == question.before.as_ref(), "{asked:?}");
-    give(&mut engine, Event::Protocol(ProtocolEvent::AnswersConfirmed));
-    assert_eq!(sight(engine.session()).question, None);
-    give(&mut engine, phase(StudyPhase::Debriefing, 3));
+    give(&mut engine, phase(StudyPhase::Debriefing, 4));
     assert_eq!(stage(&engine), DisplayStage::Thanks);
     give(&mut engine, Event::SessionEnded);
     assert_eq!(stage(&engine), DisplayStage::Thanks);
@@ -488,10 +493,18 @@ fn every_language_has_a_line_for_every_reason_that_names_no_content() {
         let spec = DisplaySpec { language: language.to_string(), ..DisplaySpec::default() };
         let mut lines = DisplayWords::for_display(&spec).of_page();
         lines.retain(|key, _| key.starts_with("why "));
-        assert_eq!(lines.len(), 13, "{language}");
+        assert_eq!(lines.len(), 15, "{language}");
         assert!(lines.values().all(|line| line.chars().count() <= 50 && line.ends_with(['.', '。'])), "{lines:?}");
         lines.retain(|_, line| !line.contains('#'));
-        let placeless = ["already_processed", "hand_empty", "hand_full", "needs_other_step", "not_processed"];
+        let placeless = [
+            "already_processed",
+            "hand_empty",
+            "hand_full",
+            "needs_other_step",
+            "not_processed",
+            "not_processed human_hand",
+            "not_served unfinished",
+        ];
         let placeless = placeless.map(|reason| format!("why {reason}"));
         assert!(lines.keys().eq(&placeless), "{language}: reasons without their place: {lines:?}");
     }

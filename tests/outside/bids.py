@@ -108,8 +108,9 @@ def split(recording):
     for folder in folders:
         folder.mkdir(parents=True)
     begins = json.loads(text[at - 1])
-    header = json.loads(text[0]) | {"continues": {"recording": "cut", "events": begins["seq"] + 1, "t_ns": begins["t_ns"]}}
-    (folders[0] / "events.jsonl").write_text("\n".join(text[:at]) + "\n")
+    first = json.loads(text[0]) | {"started": "2026-03-14T09:00:00Z"}
+    header = first | {"continues": {"recording": "cut", "events": begins["seq"] + 1, "t_ns": begins["t_ns"]}, "started": "2026-03-14T09:30:00Z"}
+    (folders[0] / "events.jsonl").write_text("\n".join([json.dumps(first), *text[1:at]]) + "\n")
     (folders[1] / "events.jsonl").write_text("\n".join([json.dumps(header), *text[at:]]) + "\n")
     return folders
 
@@ -269,6 +270,8 @@ def main(tomcom, folder):
     told_parts = json.loads(run(tomcom, "export", first, second, second, "--bids", folder / "parts", "--format", "json"))["bids"]
     [one] = told_parts["recordings"]
     assert one["rows"]["events"] + one["rows"]["gaze"] == len(lines(planned[1])) - 1, "a part is read with those before it, and once"
+    [begun] = table(next((folder / "parts").glob("sub-*/sub-*_sessions.tsv"))).to_dict("records")
+    assert begun["acq_time"] == "2026-03-14T09:00:00Z", "onsets count from the beginning of the first part"
 
     # Whether the validator would have seen it.
     table_of = tree / (told["recordings"][0]["place"] + "_events.tsv")

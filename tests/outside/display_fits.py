@@ -28,10 +28,11 @@ UPRIGHT, TOUCH_PX, CAPITALS_PX = [(390, 844), (360, 640)], 44, 6.5
 # Least width of what the robot holds, wherever its hand stands.
 HELD_PX = 32
 
-# So far away at most, in em, a reason stands from what was pressed, since it hides no name.
-NEAR_EM = 17
+# So far away at most, in em, a reason stands from what was pressed, since it hides no name: in English, and where words are longer or the card of a lesson stands over the kitchen.
+NEAR_EM = [8, 17]
 
 MEASURE = """([states, DISTANCE_M, NEAR_EM]) => Object.entries(states).map(([name, sight]) => {
+  Hands.pressed = () => sight.pressed;
   Stage.show(sight, () => 17);
   for (const choice of (sight.probe && sight.probe.touched) || []) Probe.touch({ believe: choice });
   const SLACK = 1, found = [], stageMade = document.getElementById("stage"), stage = stageMade.getBoundingClientRect();
@@ -118,9 +119,10 @@ MEASURE = """([states, DISTANCE_M, NEAR_EM]) => Object.entries(states).map(([nam
   // It stands at what was pressed.
   const press = sight.presses[0], line = document.querySelector(".why.says");
   if (press && press.why) {
-    const a = box(line), b = box(document.querySelectorAll("storage" in press.at ? ".shelf" : ".spot")["storage" in press.at ? press.at.storage : press.at.location]);
+    const a = box(line), b = box(sight.pressed ? document.querySelector(`[data-button="${sight.pressed}"]`) : document.querySelectorAll("storage" in press.at ? ".shelf" : ".spot")["storage" in press.at ? press.at.storage : press.at.location]);
     const away = Math.hypot(Math.max(0, b.left - a.right, a.left - b.right), Math.max(0, b.top - a.bottom, a.top - b.bottom)) / em;
-    if (away > NEAR_EM) found.push(`a reason is ${away.toFixed(1)} em away from what was pressed`);
+    if (away > NEAR_EM[lesson ? 1 : 0]) found.push(`a reason is ${away.toFixed(1)} em away from what was pressed`);
+    if (!line.querySelector(".tail")) found.push("a reason has no tail");
   }
   const open = document.querySelector(".recipe.open");
   for (const made of open ? [...solid, ...texts.map(({ made }) => made)] : []) if (!related(open, made) && meets(grown(box(open), 0.45 * em), box(made))) found.push(`the frame of the recipe meets ${made.className} "${made.textContent}"`);
@@ -316,7 +318,7 @@ def main():
                             if covered:
                                 failed.setdefault(f"the robot's hand at {covered[0]} covers {covered[1]}", []).append(f"{kitchen} {language} {size[0]}x{size[1]}")
                         stands = {}
-                        for measured in page.page.evaluate(MEASURE, [every, DISTANCE_M, NEAR_EM]):
+                        for measured in page.page.evaluate(MEASURE, [every, DISTANCE_M, NEAR_EM if language == "en" else NEAR_EM[1:] * 2]):
                             looked += 1
                             name, found = measured["name"], measured["found"] + too_small(size, language, measured) + of_the_page(measured, language, every[measured["name"]], here)
                             stands[name] = measured["choice"]

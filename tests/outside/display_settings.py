@@ -160,6 +160,7 @@ def hands(tomcom, chromium, folder, seed):
     badge = lambda page, button: page.ask(f"document.querySelector('[data-of=\"{button}\"]').textContent")
     with operate(tomcom, session_file(folder, "sushi", seed), folder) as console:
         page = Page(chromium, url())
+        page.wait_for("document.querySelector('.readiness')?.textContent.includes(Stage.scene().words['ready pad'])")
         start(console, page)
         # A German keyboard with Caps Lock: where the layout has Y, Z is printed.
         def down(code, key):

@@ -235,12 +235,16 @@ def states(scene, kitchen):
     for number, (place, reason) in enumerate(lines, 1):
         press = {"number": number, "at": place, "effective": False, "why": {"reason": reason.removeprefix("why "), "about": longest}}
         made[f"no effect: {reason} at {json.dumps(place)}"] = sight(presses=[press, None])
+    for number, button in enumerate(scene["buttons"], len(lines) + 1):
+        press = {"number": number, "at": {"storage" if button["does"] == "take" else "location": button["at"]}, "effective": False, "why": {"reason": reasons[0].removeprefix("why "), "about": longest}}
+        made[f"no effect of {button['name']}"] = sight(presses=[press, None], pressed=button["name"])
     question = {"title": longer("Acceptance of the signals"), "item": "a", "number": 3, "of": 12, "answer": None, "skipped": False, "before": "b", "given": [],
                 "text": "The signals came at the moments at which they were needed, and told what was not known before."}
     for name, (form, answer) in forms().items():
         made["questionnaire" if name == "scale" else f"questionnaire: {name}"] = sight("questionnaire", question={**question, "form": form, "answer": answer})
     made["questionnaire: left out"] = sight("questionnaire", question={**question, "form": forms()["choice"][0], "skipped": True})
     made["answered"] = sight("answered")
+    made["more questions"] = sight("more_questions")
     low, high = {"de": ("überhaupt nicht", "außerordentlich")}.get(scene["language"], ("not at all", "extraordinarily"))
     five = {"kind": "scale", "points": 5, "low": low, "high": high}
     given = [{"item": f"i{number}", "text": f"The signals of this trial helped in part {number}.", "answer": str(number % 7 + 1) if number != 5 else None,

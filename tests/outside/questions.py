@@ -105,6 +105,7 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         page.page.mouse.down()
         time.sleep(1.5)
         page.screenshot(folder / "consent-held-1920.png")
+        assert page.ask("document.querySelector('.hint.asks').textContent === Stage.scene().words['consent hold']")
         page.page.mouse.up()
         page.wait_for("document.querySelector('.hint.asks').textContent === Stage.scene().words['consent short']")
         time.sleep(2)
@@ -170,6 +171,10 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         assert page.ask(left) == ["19", 1], page.ask(left)
         keyboard.press("Backspace")
         keyboard.type("9")
+        assert page.ask(left) == ["19", 0], page.ask(left)
+        # A digit after it begins a new number.
+        keyboard.press("Delete")
+        keyboard.type("19")
         assert page.ask(left) == ["19", 0], page.ask(left)
         pictures("number")
         # A second touch of "Next" goes nowhere: neither "No answer" nor another answer is where it was.
@@ -243,9 +248,9 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         assert [sign(made) for made in (".turns .back", ".turns .skip")] == ["←", "0"]
         pictures("scale")
         # What cannot be chosen, and going on without an answer, is told.
-        for key, said, more in (("9", "number range", " 1 – 5"), ("x", "nothing", ""), ("Enter", "tutorial first question", "")):
+        for key, said, more in (("9", "choose", "5"), ("x", "nothing keys", "1 – 5, ←, 0, ↵"), ("Enter", "tutorial first question", "")):
             keyboard.press(key)
-            page.wait_for(f"document.querySelector('.why.says')?.textContent === Stage.scene().words['{said}'] + '{more}'")
+            page.wait_for(f"document.querySelector('.why.says')?.textContent === Stage.scene().words['{said}'].replace('#', '{more}')")
         keyboard.press("3")
         keyboard.press("Enter")
         item("robots")

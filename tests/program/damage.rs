@@ -4,9 +4,10 @@
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
+use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 use tomcom_session::log::{LOG_NAME, RecordingLock};
 
@@ -280,6 +281,19 @@ fn what_is_no_regular_file_of_usual_size_is_refused_by_every_reader_of_settings(
     }
 }
 
+/// Waits until a process has a handler for the signal that ends it.
+fn until_it_listens_to_signals(process: u32) {
+    let has_handler = || {
+        let status = fs::read_to_string(format!("/proc/{process}/status")).expect("it runs");
+        let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).expect("a mask of signals");
+        let mask = u64::from_str_radix(caught.trim(), 16).expect("a number");
+        mask & 1 << (Signal::TERM.as_raw() - 1) != 0
+    };
+    while !has_handler() {
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
 #[test]
 fn the_stream_of_a_running_session_goes_where_it_is_told_and_nowhere_else() {
     let home = folder("damage-stream");
@@ -312,7 +326,19 @@ fn the_stream_of_a_running_session_goes_where_it_is_told_and_nowhere_else() {
     let file = home.join("up-to-now.rrd");
     let saved = review(&format!("--save={}", file.display()));
     assert!(saved.status.success() && file.exists(), "{saved:?}");
-    assert_eq!((files(&recording), files(&temporary).len()), (before, 0));
+    assert_eq!((files(&recording), files(&temporary).len()), (before.clone(), 0));
+    // For a browser it is a temporary file until the viewer ends.
+    let mut command = Command::new(TOMCOM);
+    command.args(["review", &recording.display().to_string(), "--web"]).env("TMPDIR", &temporary);
+    command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").stdout(Stdio::piped());
+    let mut served = command.spawn().expect("runs");
+    let mut lines = BufReader::new(served.stdout.take().expect("its output")).lines().map_while(Result::ok);
+    assert!(lines.any(|line| line.contains("http://")), "it is served");
+    assert_eq!((files(&recording), files(&temporary).len()), (before, 1));
+    until_it_listens_to_signals(served.id());
+    kill_process(Pid::from_child(&served), Signal::TERM).expect("it runs");
+    served.wait().expect("it ends");
+    assert_eq!(files(&temporary).len(), 0);
     drop(lock);
     let saved = review("--save");
     assert!(saved.status.success() && recording.join("recording.rrd").exists(), "{saved:?}");

@@ -26,7 +26,7 @@ use tomcom_core::kitchen::{Agent, LocationId};
 use tomcom_core::measures::sequences::THINKS;
 use tomcom_session::admit::may_send;
 use tomcom_session::external::MindRole;
-use tomcom_session::history::{belief_track, wording};
+use tomcom_session::history::{belief_track, signal_words, wording};
 use tomcom_session::settings::{Condition, WizardVisibility};
 use tomcom_session::{Session, TimelineEvent, TrialPhase, offers};
 
@@ -231,6 +231,8 @@ fn why_no_offer(session: &Session, model: &ConsoleModel, believed: &[EstimatedBe
         return over.clone();
     }
     let may_see = beliefs::visibility(session, model) == WizardVisibility::Recommendation;
+    // In a session it would draw the wizard to a signal that is not worth its cost.
+    let none_advised = || signal_words::none_advised(session).filter(|_| may_see && model.playback.is_some());
     if session.spec.trial.condition == Condition::Assistant {
         let why = session.shown.as_ref().filter(|_| may_see).and_then(|shown| {
             let reason = shown.reason.as_ref().map(|reason| wording::reason(&session.kitchen, reason));
@@ -241,6 +243,7 @@ fn why_no_offer(session: &Session, model: &ConsoleModel, believed: &[EstimatedBe
             let why = reason.or_else(|| shown.words.as_deref().map(|words| printable(words).into_owned()))?;
             Some(format!("The assistant's {}: {why}", wording::signal(&shown.signal)))
         });
+        let why = why.or_else(none_advised);
         return why.unwrap_or_else(|| "The assistant sends the signals, without the wizard".to_string());
     }
     if !session.spec.asks_assistant() {
@@ -257,6 +260,9 @@ fn why_no_offer(session: &Session, model: &ConsoleModel, believed: &[EstimatedBe
     let advice = session.advice.as_ref().filter(|_| may_see);
     if let Some(words) = advice.and_then(|advice| advice.words.as_deref()) {
         return printable(words).into_owned();
+    }
+    if let Some(why) = none_advised() {
+        return why;
     }
     match believed.iter().filter(|belief| belief.standing == BeliefCorrectness::False).count() as u64 {
         0 => NOTHING_TO_SAY.to_string(),

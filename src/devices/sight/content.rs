@@ -11,7 +11,7 @@ use tomcom_core::kitchen::rules::NoEffectReason;
 use tomcom_core::kitchen::{Agent, ButtonId, ContentId, Kitchen, LocationId, LocationKind, OrderContent, State};
 use tomcom_core::robot::{IdleReason, SafetyMode};
 use tomcom_session::gaze_check::RunningGazeCheck;
-use tomcom_session::plan::{PhaseSpec, TutorialStep, TutorialStepKind};
+use tomcom_session::plan::{PhaseSpec, StudyPhase, TutorialStep, TutorialStepKind};
 use tomcom_session::wall_display::RobotDepiction;
 use tomcom_session::{Session, TimelineEvent, TrialPhase, proposals};
 
@@ -62,6 +62,8 @@ pub enum DisplayStage {
     Over,
     Questionnaire,
     Answered,
+    /// A questionnaire is answered, and another one follows.
+    MoreQuestions,
     /// The participant is thanked, in the debriefing and after the session's end.
     Thanks,
 }
@@ -226,7 +228,11 @@ fn stage(session: &Session) -> DisplayStage {
         (true, Some(PhaseSpec::Tutorial { .. })) => DisplayStage::Tutorial,
         (true, Some(PhaseSpec::Questionnaire { .. })) => {
             let is_confirmed = session.protocol.as_ref().is_some_and(|protocol| protocol.confirmed);
-            if is_confirmed { DisplayStage::Answered } else { DisplayStage::Questionnaire }
+            match session.next_phase() {
+                _ if !is_confirmed => DisplayStage::Questionnaire,
+                Some(StudyPhase::Questionnaire) => DisplayStage::MoreQuestions,
+                _ => DisplayStage::Answered,
+            }
         }
         (true, Some(PhaseSpec::Debriefing { .. })) => DisplayStage::Thanks,
     }

@@ -28,6 +28,8 @@ pub struct DisplayScene {
     /// Locations on the display, in the order of [`super::DisplayContent::contents`].
     pub locations: Vec<DisplayLocation>,
     pub storages: Vec<DisplayStorage>,
+    /// Index of the location whose content is served.
+    pub plate: usize,
     pub buttons: Vec<DisplayButton>,
     /// AprilTags in the corners of the display; empty if the session wants no tags or there is no room for them.
     pub tags: Vec<TagPicture>,
@@ -138,6 +140,7 @@ pub fn scene(session: &Session) -> DisplayScene {
         display_m: kitchen.display_m,
         locations: kitchen.locations.iter().map(spot).collect(),
         storages: kitchen.storages.iter().map(shelf).collect(),
+        plate: kitchen.plate.index(),
         buttons: knobs(kitchen, spec, &words),
         tags: if spec.display.tags { marks(kitchen) } else { Vec::new() },
         items: items.map(|item| picture(&item.name, &item.look)).collect(),

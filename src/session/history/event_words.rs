@@ -30,8 +30,8 @@ use tomcom_core::robot::{ArmStage, SafetyMode};
 pub const HEADING: &str = " trial time  what happened";
 
 /// The text line for an event that was just applied, with the time on the trial's clock; `None` for events without a
-/// line: gaze samples, fixations, blinks, drawn signals, arm motion, estimates without a probable false belief, changes
-/// between normal and reduced speed, and recommendations of no communication.
+/// line: gaze samples, fixations, blinks, drawn signals, arm motion, estimates without a probable false belief, and
+/// changes between normal and reduced speed.
 pub fn line(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<String> {
     let (words, session) = (words(stamped, follower)?, &follower.session);
     Some(match session.phase {
@@ -105,8 +105,7 @@ pub fn words(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<S
         }
         Event::RobotStopped => "robot stopped by the wizard".to_string(),
         Event::RobotResumed => "robot resumed".to_string(),
-        // A recommendation gets a text line only if it advises a signal.
-        Event::Advised(advice) => advised(kitchen, advice, follower.session.spec.assistant.concept.name())?,
+        Event::Advised(advice) => advised(kitchen, advice, follower.session.spec.assistant.concept.name()),
         // Beliefs get no line.
         Event::External(event) => event.words()?,
         Event::OfferOpened(offer) => offered(offer),
@@ -138,10 +137,6 @@ pub fn words(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<S
 /// The words of an event at which a replay stops, also of events without a line.
 pub fn step_words(stamped: &TimestampedEvent, follower: &SessionFollower) -> String {
     words(stamped, follower).unwrap_or_else(|| match &stamped.event {
-        Event::Advised(advice) => {
-            let unit = follower.session.spec.assistant.concept.name().unit();
-            format!("advised: {}", signal_words::not_advised(unit, advice))
-        }
         Event::RobotSafety { mode, .. } => format!("robot's arm: {} speed", mode.name().to_lowercase()),
         Event::External(event) => format!("external {} answers", event.role().name()),
         Event::Tracker(TrackerEvent::Fixation { duration_ms, .. }) => format!("fixation of {duration_ms:.0} ms"),
@@ -228,18 +223,20 @@ fn estimated(kitchen: &Kitchen, estimate: &RecordedEstimate) -> Option<String> {
     (!wrong.is_empty()).then(|| format!("estimated before the press: participant believes {}", wrong.join(", ")))
 }
 
-fn advised(kitchen: &Kitchen, advice: &Recommendation, by: ConceptName) -> Option<String> {
+fn advised(kitchen: &Kitchen, advice: &Recommendation, by: ConceptName) -> String {
     if let Some(proposal) = &advice.proposal {
         let presses: Vec<String> = proposal.presses.iter().map(|press| said(press)).collect();
-        return Some(format!("proposed after the error: {}", presses.join(", ")));
+        return format!("proposed after the error: {}", presses.join(", "));
     }
-    let best = advice.best.as_ref()?;
+    let Some(best) = &advice.best else {
+        return format!("advised: {}", signal_words::not_advised(by.unit(), advice));
+    };
     let what = wording::signal(best);
     // An external concept can name a signal without its value.
     let worth = advice.options.iter().find(|option| option.signal == *best).map(|option| worth(option, by));
     let reason = advice.reason.as_ref().map(|reason| wording::reason(kitchen, reason).words());
     let reason = reason.or_else(|| advice.words.clone()).map_or(String::new(), |reason| format!(": {reason}"));
-    Some(format!("advised: {what}{}{reason}", worth.unwrap_or_default()))
+    format!("advised: {what}{}{reason}", worth.unwrap_or_default())
 }
 
 fn worth(option: &SignalOption, by: ConceptName) -> String {

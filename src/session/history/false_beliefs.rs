@@ -1,6 +1,8 @@
 //! False beliefs: those of the estimate as intervals of time, and all before an error. The one source for replays, the review
 //! and exports.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
 use crate::history::wording;
@@ -9,7 +11,8 @@ use tomcom_core::base::time::SessionTime;
 use tomcom_core::communication::recommendation::aspects_told;
 use tomcom_core::kitchen::{Agent, AspectId, Kitchen, Press, State};
 use tomcom_core::measures::attribution::ErrorCause;
-use tomcom_core::measures::sequences::FALSE_BELOW;
+use tomcom_core::measures::sequences::{FALSE_BELOW, FalseBeliefEpisode, FalseBeliefTracker};
+use tomcom_core::mind::belief::Belief;
 use tomcom_core::mind::dirichlet::DirichletBelief;
 
 /// Where only gaze changes the estimate, false beliefs begin and end at the first sample of such a period, in nanoseconds;
@@ -252,16 +255,56 @@ impl HeldFalseBelief {
     }
 }
 
-/// What was believed wrong just before an error.
+/// The participant's own false beliefs by state aspect, as far as it records them: the wrong value that is most probably
+/// believed, the true value, and when this began. As in the estimate, another wrong value or truth is another false belief.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct OwnFalseBeliefs(BTreeMap<AspectId, (usize, usize, SessionTime)>);
+
+impl OwnFalseBeliefs {
+    /// Takes a recorded belief, which `episodes` have taken.
+    pub(crate) fn note(&mut self, session: &Session, now: SessionTime, belief: &Belief, episodes: &FalseBeliefTracker) {
+        let kitchen = &session.kitchen;
+        for aspect in kitchen.aspect_ids() {
+            let (values, truth) = (belief.distribution(aspect), kitchen.true_value(session.state, aspect));
+            if values[truth] >= FALSE_BELOW {
+                self.0.remove(&aspect);
+                continue;
+            }
+            let wrong = likeliest_wrong(values, truth);
+            let began = match self.0.get(&aspect) {
+                Some(&(believed, was, began)) if (believed, was) == (wrong, truth) => began,
+                // Only a location's truth changes.
+                Some(&(_, was, _)) if was != truth => session.changed_at[aspect.index()],
+                Some(_) => now,
+                None => {
+                    let is_it = |one: &&FalseBeliefEpisode| one.aspect == aspect && one.corrected.is_none();
+                    episodes.all().find(is_it).map_or(now, |one| one.began)
+                }
+            };
+            self.0.insert(aspect, (wrong, truth, began));
+        }
+    }
+
+    /// When the false belief about an aspect that is held began.
+    pub(crate) fn began(&self, aspect: AspectId) -> Option<SessionTime> {
+        self.0.get(&aspect).map(|(.., began)| *began)
+    }
+}
+
+/// What was believed wrong just before an error, and advised then.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct FalseBeliefsBefore {
     /// The participant's own, as far as it records them.
     pub participant: Vec<HeldFalseBelief>,
     pub estimate: Vec<HeldFalseBelief>,
+    /// Why nothing was advised, in words.
+    #[serde(skip)]
+    pub none_advised: Option<String>,
 }
 
 impl FalseBeliefsBefore {
-    /// "believed wrong before it, by the participant: cooking pot: thinks empty, is nori since 1:15; by the estimate: …".
+    /// "believed wrong before it, by the participant: cooking pot: thinks empty, is nori since 1:15; by the estimate: …;
+    /// advice before it: no signal".
     pub fn told(&self) -> Option<String> {
         let one = |held: &HeldFalseBelief| {
             let since = held.since().map_or(String::new(), |since| format!(" since {since}"));
@@ -272,7 +315,10 @@ impl FalseBeliefsBefore {
             .filter(|(_, held)| !held.is_empty())
             .map(|(by, held)| format!("by the {by}: {}", held.iter().map(one).collect::<Vec<_>>().join("; ")));
         let told: Vec<String> = told.collect();
-        (!told.is_empty()).then(|| format!("believed wrong before it, {}", told.join("; ")))
+        let believed = (!told.is_empty()).then(|| format!("believed wrong before it, {}", told.join("; ")));
+        let advice = self.none_advised.as_ref().map(|why| format!("advice before it: {why}"));
+        let parts: Vec<String> = believed.into_iter().chain(advice).collect();
+        (!parts.is_empty()).then(|| parts.join("; "))
     }
 }
 

@@ -1,5 +1,6 @@
 //! A signal that was shown, in words: why it was sent, what it was worth, and what became of it.
 
+use crate::Session;
 use crate::follower::SessionFollower;
 use crate::history::wording;
 use crate::wizard_log::ShownSignalRecord;
@@ -48,6 +49,14 @@ pub fn not_advised(unit: BenefitUnit, advice: &Recommendation) -> String {
     let best =
         advice.top().map(|best| format!("; best would be {}: {}", wording::signal(&best.signal), worth(unit, best)));
     format!("no signal{}", best.unwrap_or_default())
+}
+
+/// Likewise of the session's present advice; `None` if it advises something, or ranks nothing.
+pub fn none_advised(session: &Session) -> Option<String> {
+    let advice = session.advice.as_ref().filter(|advice| advice.best.is_none() && advice.proposal.is_none())?;
+    // Once the advised signal was sent, the next one is not judged before the next advice.
+    let is_rated = advice.top().is_some_and(|top| top.net <= 0.0);
+    is_rated.then(|| not_advised(session.spec.assistant.concept.name().unit(), advice))
 }
 
 /// In parts: "recipe of order 1, by the assistant", then what the assistant thought: "the human takes …", "saves …".

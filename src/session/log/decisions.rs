@@ -129,8 +129,11 @@ fn rulings(folder: &Path) -> FileResult<Rulings> {
     read_decisions(&folder.join(EXCLUSION_NAME), remedy)
 }
 
-/// Whether the recording is excluded, at the console or by a later ruling. The log is read to its end.
+/// Whether the recording is excluded, at the console or by a later ruling; without a ruling, the log is read to its end.
 pub fn is_excluded(log: &mut LogReader) -> FileResult<bool> {
+    if let Some(ruling) = ruling(log.folder())? {
+        return Ok(ruling.excluded);
+    }
     let mut is_excluded = false;
     while let Some(line) = log.next_line()? {
         match line.stamped.event {
@@ -139,7 +142,7 @@ pub fn is_excluded(log: &mut LogReader) -> FileResult<bool> {
             _ => {}
         }
     }
-    Ok(ruling(log.folder())?.map_or(is_excluded, |ruling| ruling.excluded))
+    Ok(is_excluded)
 }
 
 /// Records whether analyses count a closed recording. It is an error if the recording is being written or is continued
@@ -160,12 +163,19 @@ fn decide(
     of_participant: bool,
 ) -> Result<ExclusionRecord, DecisionError> {
     check_reason(reason, !excluded)?;
-    let mut log = LogReader::open(recording)?;
-    let folder = &log.folder().to_path_buf();
+    let mut log = match LogReader::open(recording) {
+        // A damaged header does not keep a recording from being left out.
+        Err(_) if excluded && recording.join(LOG_NAME).is_file() => None,
+        log => Some(log?),
+    };
+    let folder = &log.as_ref().map_or(recording, LogReader::folder).to_path_buf();
     let _lock = RecordingLock::take(folder)?;
     check_last_part(folder)?;
     let mut all = rulings(folder)?;
-    if !excluded && !is_excluded(&mut log)? {
+    if let Some(log) = &mut log
+        && !excluded
+        && !is_excluded(log)?
+    {
         let found = format!("no exclusion of {}", recording.display());
         return Err(DecisionError::Unfit { found, remedy: "a recording that is excluded".to_string() });
     }

@@ -296,7 +296,8 @@ impl LogReader {
     }
 
     fn wrong(&self, text: &str, column: usize, found: &str) -> FileError {
-        let remedy = "one event of a tomcom log, numbered without gaps";
+        let remedy = "one event of a tomcom log, numbered without gaps; an analysis goes on without the recording after tomcom \
+                      exclude RECORDING --reason …";
         at_line(&self.path, self.number.max(1), text, column, found.to_string(), remedy)
     }
 }

@@ -189,7 +189,7 @@ impl ListedPlace {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ListedRecording {
     pub recording: String,
-    /// The participant's code; null if the recording cannot be read.
+    /// The participant's code; null if the header cannot be read.
     pub code: Option<String>,
     pub condition: Option<Condition>,
     pub arm: Option<StudyArm>,
@@ -269,6 +269,11 @@ fn widest(rows: &[[String; 8]], column: usize) -> usize {
 }
 
 impl ListedRecording {
+    /// All that the line shows.
+    pub fn words(&self) -> String {
+        self.cells().join(" ") + " " + self.reason.as_deref().unwrap_or_default()
+    }
+
     pub fn cells(&self) -> [String; 8] {
         let or_dash = |cell: Option<String>| cell.unwrap_or_else(|| "-".to_string());
         let minutes = |seconds: f64| format!("{}:{:02}", seconds as u64 / 60, seconds as u64 % 60);

@@ -22,7 +22,7 @@ use crate::figures::{CorrectedRecording, StudySummary};
 use crate::files::export::{AnalysisFolder, AnalysisWriteError};
 use crate::files::pool_file::read_frozen;
 use crate::frozen_plan::{FrozenPlan, PlanVersions, PreregistrationCheck, RecordedPlan};
-use crate::gathered::{GatheredPlace, GatheredRecordings, name};
+use crate::gathered::{GatheredPlace, GatheredRecordings, name, whole};
 use crate::kept_cost::KeptCost;
 use crate::pass::reading::{AnalysisScope, RecordedConsent, WaivedPractice};
 pub use crate::pass::tell::{describe, describe_arms};
@@ -40,7 +40,7 @@ use crate::{parallel, report};
 use tomcom_core::base::text::{count, did_you_mean};
 use tomcom_core::kitchen::Kitchen;
 use tomcom_session::event::TrialEndReason;
-use tomcom_session::files::file_error::FileError;
+use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::log::{LogReader, header_digest, rater_codes};
 use tomcom_session::replay::SameKitchenCheck;
 
@@ -158,9 +158,9 @@ fn check_plans(places: &[GatheredPlace], wanted: &[String]) -> Result<(), (Strin
     Ok(())
 }
 
-/// Analyses recordings of one kitchen and calls `done` after each. Returns the summary and the report's path. Errors: a
-/// recording cannot be read or replayed, or belongs to another kitchen than the first; or the results cannot be
-/// written.
+/// Analyses recordings of one kitchen and calls `done` after each. Returns the summary and the report's path. Errors:
+/// recordings cannot be read, do not replay as recorded, or belong to another kitchen than the first (all are named); or
+/// the results cannot be written.
 pub fn study(
     analysis: &AnalysisRequest,
     recordings: &NamedRecordings,
@@ -169,14 +169,17 @@ pub fn study(
     let scope = AnalysisScope { raters: recordings.raters(analysis)?, ..analysis.scope.clone() };
     let frozen = frozen(analysis)?;
     let export = AnalysisFolder::create(&analysis.out)?;
-    let Some((first, _)) = recordings.found.first() else { return Err(nothing_counts(analysis, 0, &[], &[])) };
+    let Some((first, _)) = recordings.found.first() else {
+        return Err(nothing_counts(analysis, 0, &[], &recordings.foreign));
+    };
     let kitchen = LogReader::open(first)?.kitchen;
     let numbered: Vec<(usize, &(PathBuf, String))> = recordings.found.iter().enumerate().collect();
     let work = |kept: &mut KeptCost, &(index, recording): &(usize, &(PathBuf, String))| {
-        let (analysed, rows) = analyse(recording, &scope, (first, &kitchen), kept)?;
-        Ok(keep(&export, &scope, index, &analysed, &rows)?)
+        let analysed = analyse(recording, &scope, (first, &kitchen), kept);
+        analysed.map(|(analysed, rows)| keep(&export, &scope, index, &analysed, &rows))
     };
-    parallel::each_with(&numbered, KeptCost::default, work, done).into_iter().collect::<Result<(), StudyError>>()?;
+    let kept = whole(parallel::each_with(&numbered, KeptCost::default, work, done))?;
+    kept.into_iter().collect::<Result<(), AnalysisWriteError>>()?;
     let left = (recordings.copies.clone(), recordings.foreign.clone());
     let frozen = frozen.map(|frozen| Ok::<_, FileError>((frozen, recordings.versions()?))).transpose()?;
     conclude(numbered.len(), analysis, &export, frozen, left)
@@ -193,7 +196,7 @@ fn analyse(
     scope: &AnalysisScope,
     first: (&Path, &Arc<Kitchen>),
     kept: &mut KeptCost,
-) -> Result<(AnalysedRecording, [Vec<u8>; 5]), StudyError> {
+) -> FileResult<(AnalysedRecording, [Vec<u8>; 5])> {
     let log = LogReader::open(path)?;
     let (plan, correction) = (RecordedPlan::from_header(&log.header), log.header.correction.clone());
     let digest = header_digest(log.path_of_last_part())?;

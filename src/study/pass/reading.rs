@@ -2,7 +2,7 @@
 //! also the consent and the answers to tutorials, which can stand in practice recordings.
 
 use std::collections::VecDeque;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -34,12 +34,13 @@ use tomcom_core::measures::sequences::{
     BeliefErrorCounts, ErrorSequence, FalseBeliefEpisode, sequences, sequences_any_aspect,
 };
 use tomcom_core::measures::{JudgedPress, median};
+use tomcom_core::mind::RecordedEstimate;
 use tomcom_core::mind::belief::Belief;
 use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_session::apply::ApplyError;
-use tomcom_session::files::file_error::FileResult;
+use tomcom_session::files::file_error::{FileError, FileResult};
 use tomcom_session::follower::SessionFollower;
-use tomcom_session::log::{LogReader, rater_codes};
+use tomcom_session::log::{LogLine, LogReader, at_line, rater_codes};
 use tomcom_session::plan::{AnswerFormat, Questionnaire, QuestionnaireItem, QuestionnaireItemKind, ScoreRule};
 use tomcom_session::protocol::{ProtocolEvent, StudyProtocolState};
 use tomcom_session::settings::{Condition, ParticipantKind};
@@ -156,7 +157,12 @@ pub fn read(
     let mut probes = ProbeCollector::default();
     let mut display = DisplayLossTally::default();
     let is_simulated = header.session.participant.kind == ParticipantKind::Simulated;
-    let is_coded = rater_codes::raters(log.folder())?.len() >= 2;
+    let coders = rater_codes::raters(log.folder())?.len();
+    let is_coded = coders >= 2;
+    // Another version of the program may estimate otherwise.
+    let is_own =
+        |part: &PathBuf| LogReader::open(part).is_ok_and(|part| part.header.program == env!("CARGO_PKG_VERSION"));
+    let repeats = log.logs().iter().all(is_own);
     let mut pass = ReplayPass::new(log.session(), scope.concepts, is_simulated || is_coded, cost.clone());
     let mut trace = BeliefEvidence::default();
     let mut by_estimate = (!is_simulated).then(|| ByEstimate {
@@ -182,7 +188,13 @@ pub fn read(
         }
         match line.stamped.event {
             Event::Protocol(ProtocolEvent::AnswersConfirmed) => answers.extend(confirmed_answers(&follower.session)),
-            Event::BeliefEstimated(estimate) => estimates.push_back(estimate),
+            Event::BeliefEstimated(ref estimate) => {
+                let again = follower.estimated.as_ref().map(|estimated| estimated.witness(&kitchen));
+                if repeats && again.as_ref().is_none_or(|again| !is_alike(again, estimate)) {
+                    return Err(unlike_recorded(&log, &line, estimate, again));
+                }
+                estimates.push_back(estimate.clone());
+            }
             _ => {}
         }
     }
@@ -268,9 +280,38 @@ pub fn read(
         stale_consensus: coded.stale.filter(|_| !is_simulated),
         probes: details.probes.as_ref().map(ProbedTrial::statistics),
     };
-    let facts = RecordingFacts::from_session(&header, session);
+    let mut facts = RecordingFacts::from_session(&header, session);
+    if is_simulated && coders > 0 {
+        facts.note(RecordingFacts::UNUSED_CODES, name.to_string());
+    }
     kept.keep(&kitchen, pass.into_cost());
     Ok(Some((kitchen, RecordingAnalysis { trial, details, facts, rows })))
+}
+
+/// Largest difference of ln p (recorded with four digits) between two computations of one estimate, in nats.
+const ALIKE: f64 = 1e-3;
+
+/// Whether two estimates are of one press and differ by no more than the arithmetic of two machines.
+fn is_alike(one: &RecordedEstimate, other: &RecordedEstimate) -> bool {
+    one.press == other.press && (one.log_p - other.log_p).abs() <= ALIKE
+}
+
+/// The estimate that a log has at a press does not follow from what the log has before it.
+fn unlike_recorded(
+    log: &LogReader,
+    line: &LogLine,
+    recorded: &RecordedEstimate,
+    again: Option<RecordedEstimate>,
+) -> FileError {
+    let again = again.map_or("none".to_string(), |again| format!("ln p = {} of press {}", again.log_p, again.press));
+    let found = format!(
+        "an estimate (ln p = {} of press {}) that does not follow from the events before it, which lead to {again}: the log was \
+         changed",
+        recorded.log_p, recorded.press
+    );
+    let remedy = "the log as tomcom wrote it: tomcom replay RECORDING --verify names the first line that differs; or leave the \
+                  recording out: tomcom exclude RECORDING --reason …";
+    at_line(log.path(), line.number, &line.text, 0, found, remedy)
 }
 
 fn details(

@@ -61,12 +61,15 @@ pub fn describe(figures: &StudySummary) -> String {
         (Some(0), _) => format!("belief related errors: 0 of {}\n", count(totals.errors, "error", "errors")),
         (Some(related), Some(sequences)) => format!(
             "belief related errors: {related} ({}), in {} of {} errors each ({} if a sequence may mix aspects), \
-             recovery after {} s{}\n",
+             {}{}\n",
             percent(totals.belief_related_share, totals.why_no_share()),
             count(sequences, "sequence", "sequences"),
             number(totals.mean_sequence_length, totals.why_no_length()),
             number(totals.mean_sequence_length_any_aspect, totals.why_no_length()),
-            number(totals.mean_recovery_s, totals.why_no_recovery()),
+            totals.mean_recovery_s.map_or_else(
+                || format!("no recovery: {}", totals.why_no_recovery()),
+                |seconds| format!("recovery after {seconds:.2} s")
+            ),
             if totals.belief_sources.keys().eq([&BeliefSource::Estimate]) {
                 "; beliefs by the assistant's estimate alone"
             } else {
@@ -78,16 +81,19 @@ pub fn describe(figures: &StudySummary) -> String {
     text += &lines(mixed_sources(figures).map(|(words, _)| words));
     if let Some(found) = &figures.raters {
         text += &format!(
-            "two raters ({}): same cause for {} of {} errors (kappa {}), same false belief for {} of {} (kappa {})\n",
+            "two raters ({}): same cause for {} of {} errors ({}), same false belief for {} of {} ({})\n",
             pairs_in_words(&figures.rater_pairs),
             found.same_cause,
             found.errors,
-            number(found.kappa_cause, why::NO_KAPPA),
+            kappa(found.kappa_cause),
             found.same_aspect,
             found.beliefs,
-            number(found.kappa_aspect, why::NO_KAPPA)
+            kappa(found.kappa_aspect)
         );
     }
+    text += &lines(figures.unused_codes.as_ref().map(|recordings| {
+        format!("raters' codes are not used for simulated participants, whose beliefs are recorded: {recordings}")
+    }));
     text += &lines(figures.identical_codes.iter().map(IdenticalCodes::in_words));
     if let (Some(shared), Some(episodes)) = (&figures.shared_beliefs, totals.false_belief_episodes) {
         text += &format!(
@@ -226,13 +232,13 @@ fn of_similarity(who: &str, found: &Similarity) -> String {
         format!("{recall} (by chance {chance})")
     };
     format!(
-        "{who}: {} of {} signals of the wizard matched, precision {}, kappa {}\n  recall of the same signal {}, of \
+        "{who}: {} of {} signals of the wizard matched, precision {}, {}\n  recall of the same signal {}, of \
          the same kind \
          {}, of any signal then {}; the paper's 74 % is not defined further\n",
         found.matched,
         found.of_n,
         number(found.signal.precision, why::NO_SIGNAL),
-        number(found.kappa, why::NO_KAPPA),
+        kappa(found.kappa),
         level(&found.signal),
         level(&found.kind),
         level(&found.any),
@@ -314,6 +320,10 @@ pub fn describe_arms(found: &StudyArmComparison) -> String {
     }
     text += &lines(doubts(found).iter().map(|sentence| format!("  {sentence}")));
     text
+}
+
+fn kappa(value: Option<f64>) -> String {
+    value.map_or_else(|| why::NO_KAPPA.to_string(), |value| format!("kappa {value:.2}"))
 }
 
 fn number(value: Option<f64>, why: &str) -> String {

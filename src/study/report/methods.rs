@@ -114,9 +114,12 @@ fn analysis(figures: &StudySummary) -> String {
         // Answers to freeze probes do not tell the causes of errors.
         Some(BeliefSource::Probes) | None => "Causes of errors are not known for all trials.",
     };
+    let unused = figures.unused_codes.as_ref().map_or(String::new(), |recordings| {
+        format!(" Codes of raters were not used for simulated participants ({recordings}).")
+    });
     format!(
-        "Every recording was replayed event by event; errors, their causes{computed} were recomputed from the recorded events. \
-         {causes}"
+        "Every recording was replayed event by event; errors, their causes{computed} were recomputed from the recorded events. In \
+         recordings of this version of tomcom, the estimate at each press had to be as recorded. {causes}{unused}"
     )
 }
 

@@ -177,6 +177,12 @@ fn while_nothing_is_offered_the_line_changes_only_with_the_beliefs() {
     check(&stage, "nothing worth saying: 1 false belief costs less than a signal");
     stage.estimate(&[("order_2", "crab maki", 0.99)], false);
     check(&stage, "nothing worth saying");
+    // A replay says which signal was best.
+    stage.replays(Playback::new("S001".to_string()));
+    let best = "no signal; best would be recipe of order 1: saves 1.20 presses, -0.30 after the cost of a signal";
+    stage.shows((120, 40), &[best]);
+    stage.session.spec.trial.condition = Condition::Assistant;
+    stage.shows((120, 40), &[best]);
 }
 
 #[test]

@@ -179,6 +179,15 @@ fn words_that_are_typed_in_a_replay_find_events() {
     stage.wait(0.1);
     assert_eq!(stage.key(KeyCode::Enter), Some(ConsoleCommand::Move(ReplayAction::ToTime(at(14.0)))));
     assert_eq!(stage.model.dialog, None);
+    // Numbers are not those of the clock.
+    stage.wait(1.0);
+    stage.control('k');
+    type_in(&mut stage, "tuna 14");
+    stage.hides((120, 40), &["note tuna is wrong"]);
+    stage.key(KeyCode::Esc);
+    stage.control('k');
+    type_in(&mut stage, "tuna 0:14");
+    stage.shows((120, 40), &["note tuna is wrong"]);
 }
 
 #[test]

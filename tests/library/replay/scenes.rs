@@ -138,6 +138,8 @@ fn a_page_says_what_the_error_was_why_and_what_was_believed_before_it() {
     assert!(errors.len() > 2, "{} errors", errors.len());
     let pages = texts(&moments, "human/now");
     let states = texts(&moments, "error");
+    // By aspect, the last own false belief that began before an error: another wrong value or truth begins later.
+    let mut began: BTreeMap<String, (String, String, Option<SessionTime>)> = BTreeMap::new();
     for (number, seq) in (1..).zip(&errors) {
         let heading = format!("## Error {number} at ");
         let (moment, page) = pages.iter().find(|(_, page)| page.starts_with(&heading)).expect("a page of the error");
@@ -173,6 +175,13 @@ fn a_page_says_what_the_error_was_why_and_what_was_believed_before_it() {
             assert!(told.contains(&format!("{}: {}", one.about, one.told)), "{one:?}: {told}");
             assert_eq!(one.told.starts_with("unsure, "), one.p_believes < THINKS, "{one:?}");
             assert!(one.since().is_none_or(|since| since < replay.session().trial_clock_at(judged.time)), "{one:?}");
+        }
+        for own in &believed.participant {
+            let now = (own.believes.clone(), own.truth.clone(), own.since());
+            let before = began.insert(own.aspect.clone(), now.clone());
+            if let Some((believes, truth, since)) = before.filter(|before| (&before.0, &before.1) != (&now.0, &now.1)) {
+                assert!(now.2.is_none_or(|now| since.is_none_or(|since| now > since)), "{believes}, {truth}: {own:?}");
+            }
         }
     }
     let believed =

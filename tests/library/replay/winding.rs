@@ -183,7 +183,17 @@ fn a_blinded_replay_shows_no_signal_and_the_same_kitchen() {
         .count()
     };
     assert!(steps(&mut blind) < steps(&mut open));
-    // Advice of nothing is told, too.
+    // Advice of nothing is told, too, and why.
+    let why = "no signal; best would be ";
+    assert!(open.told_events().iter().any(|(_, told)| told.contains(&format!("  advised: {why}"))));
+    let mut unadvised = 0;
+    open.wind(0);
+    while let Some(error) = open.landmark(ReplayLandmark::Error, true, false) {
+        open.wind(error);
+        let named = open.named(ReplayLandmark::Error).expect("an error");
+        unadvised += usize::from(named.contains(&format!("; advice before it: {why}")));
+    }
+    assert!(unadvised > 0, "why nothing was advised before an error");
     open.wind(0);
     while open.position < events {
         open.wind(open.next_step());
@@ -214,6 +224,13 @@ fn a_replay_goes_from_one_error_signal_or_false_belief_to_the_next_and_back() {
     // The palette finds events by their words: an error leads to its explanation.
     let told = film.told_events();
     assert!(told.iter().any(|(to, _)| *to == ReplayAction::ToNth(ReplayLandmark::Error, 1)), "{told:?}");
+    let finds = |words: &str| told.iter().any(|(_, told)| told.contains(words));
+    let kinds = ["; error 1: ", "  estimated false belief 1: "];
+    assert!(kinds.into_iter().all(finds), "{told:?}");
+    for (_, told) in &told {
+        let why = told.split_once("; error ").and_then(|(press, error)| Some((press, error.split_once(": ")?.1)));
+        assert!(why.is_none_or(|(press, why)| !press.ends_with(why)), "the reason once: {told}");
+    }
     let back = film.landmark(ReplayLandmark::Error, false, false).expect("the error before");
     film.wind(back);
     assert_eq!(film.time(), errors[errors.len() - 2]);

@@ -38,6 +38,13 @@ fn the_first_sentence_is_the_primary_outcome_and_says_no_more_than_its_interval(
         // The same words in the terminal and in the report.
         assert!(describe(&figures).contains(sentence) && page(&figures, trials).contains(sentence.as_str()));
     }
+    // No errors at all are no percentage, and neither is a ratio of 1.
+    let mut none = trials(&[[0, 0]; 3], &[[0, 0]; 3]);
+    none.iter_mut().zip(0..).for_each(|(trial, index)| trial.human_presses += index * index);
+    let told = primary_outcome(&summary(&none));
+    assert!(told.iter().all(|one| one.ends_with(": none in wizard and none in unassisted trials.")), "{told:?}");
+    let told = primary_outcome(&summary(&trials(&[[20, 22], [22, 20], [18, 18]], &[[20, 22], [22, 20], [18, 18]])));
+    assert!(told[0].contains("shown: about as many in wizard trials as in unassisted trials ("), "{told:?}");
     // With so few participants an interval would reach from almost nothing to a multiple.
     let few = trials(&[[20, 24], [22, 18]], &[[20, 21], [22, 18]]);
     let figures = summary(&few);

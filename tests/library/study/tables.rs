@@ -10,7 +10,8 @@ use tomcom_session::wall_display::DisplayEvent;
 use tomcom_study::column::{CsvRow, CsvTable, DataDictionaryRow, TableCell, TableColumn, described, dictionary};
 use tomcom_study::files::export::AnalysisFolder;
 use tomcom_study::frozen_plan::RecordedPlan;
-use tomcom_study::pass::reading::{RecordingAnalysis, WaivedPractice};
+use tomcom_study::kept_cost::KeptCost;
+use tomcom_study::pass::reading::{self, AnalysisScope, RecordingAnalysis, WaivedPractice};
 use tomcom_study::prevention::PreventionCounts;
 use tomcom_study::roc::ConceptPreventionCounts;
 use tomcom_study::study_part::AnalysedRecording;
@@ -84,6 +85,24 @@ fn analysis(name: &str) -> RecordingAnalysis {
     let folder = folder(name);
     record_person(&folder);
     read(&folder, "hand")
+}
+
+/// One press that is another one changes what follows from it.
+#[test]
+fn a_changed_log_is_refused_with_its_line() {
+    let folder = folder("changed");
+    let text = fs::read_to_string("tests/golden/format-3-simulated.jsonl").expect("a recording");
+    let press =
+        text.lines().position(|line| line.contains(r#""agent":"human","button":"take nori""#)).expect("a press");
+    let changed =
+        text.replacen(r#""agent":"human","button":"take nori""#, r#""agent":"human","button":"take rice""#, 1);
+    fs::write(folder.join("events.jsonl"), changed).expect("a recording");
+    let scope = AnalysisScope { concepts: false, events: true, raters: None };
+    let error =
+        reading::read(&folder, "changed", &scope, &mut KeptCost::default()).expect_err("another press").to_string();
+    // The estimate stands below the press, and lines count from 1.
+    assert!(error.contains(&format!("events.jsonl:{}: found an estimate", press + 2)), "{error}");
+    assert!(error.contains("does not follow from the events before it"), "{error}");
 }
 
 /// A loss counts for as long as the trial's clock goes: neither before the trial nor in a pause.

@@ -150,8 +150,21 @@ fn a_folder_is_listed_and_is_no_recording_where_one_is_meant() {
         assert!(told.contains("found a folder with 4 recordings, where one recording is meant"), "{told}");
         assert!(told.contains(&format!("{out}/seed7-S001, {out}/seed7-S002")), "{told}");
     }
+    // All that are damaged are named at once; excluded, they are left out, and the others are read.
+    let damaged = ["seed7-S004", "seed7-S005"].map(|name| format!("{out}/{name}"));
+    fs::create_dir(&damaged[1]).expect("a folder");
+    fs::write(format!("{}/events.jsonl", damaged[1]), "{}\n").expect("damaged");
+    let told = complaint(&["codes", out]);
+    assert!(told.contains("2 recordings with errors: ") && damaged.iter().all(|one| told.contains(one)), "{told}");
+    damaged.iter().for_each(|one| drop(check(&["exclude", one, "--reason", "disk full"], 0)));
+    let told = String::from_utf8_lossy(&check(&["list", out, "excluded", "full"], 0).stdout).into_owned();
+    assert!(told.contains("(excluded: disk full; unreadable: ") && told.contains("2 recordings in "), "{told}");
+    let told = String::from_utf8_lossy(&check(&["codes", out], 0).stderr).into_owned();
+    let left_out =
+        "2 recordings are excluded, and cannot be read, and left out: seed7-S004 (excluded: disk full), seed7-S005";
+    assert!(told.contains(left_out), "{told}");
     // All recordings of a folder are meant; another folder in it is none.
-    fs::remove_dir_all(format!("{out}/seed7-S004")).expect("removed");
+    damaged.iter().for_each(|one| fs::remove_dir_all(one).expect("removed"));
     fs::create_dir_all(format!("{out}/study")).expect("a folder");
     let coded = json(&["codes", out]);
     assert_eq!(coded["recordings"].as_array().map(Vec::len), Some(3), "{coded}");
@@ -254,6 +267,7 @@ fn errors_of_a_recording_are_listed_as_commands_that_open_the_viewer_there() {
         let told = |words: &str| held[words].is_string();
         assert!(held.is_null() || told("aspect") && told("believes") && told("truth"), "{one}");
         assert!(one["kind"] != "error" || one["press"].is_u64() && one["time_s"] == one["from_s"], "{one}");
+        assert!(one["kind"] != "error" || one["cause_aspects"] == Value::Array(Vec::new()), "a person's causes: {one}");
     }
     let told = list(&["--errors", "--beliefs"]);
     let words: Vec<&str> = listed.iter().filter_map(|one| one["words"].as_str()).collect();

@@ -111,7 +111,7 @@ fn settle_with_another(terminal: &Terminal, name: &str, kept: &[String]) {
     let codes = format!("rater,press,cause,aspect\nR2,{},slip,\nR2,{},race,\n", presses[0], presses[1]);
     fs::write(recording.join("codes-R2.csv"), codes).expect("written");
     terminal.run(&["replay", name, "--settle", "R2", "R1"]);
-    terminal.see("error 2 is the first without a code");
+    terminal.see("error 2 is the first to be settled");
     terminal.see("R1: wrong about cooking pot");
     terminal.see("R2: race");
     let screen = terminal.screen();

@@ -283,15 +283,17 @@ const Art = (() => {
     /** A button of a gamepad; a standard one by where it is, another one by its number from 1. */
     pad(number, isStandard) {
       const dots = [[50, 80], [80, 50], [20, 50], [50, 20]], arms = { 12: "M36 36 V8 H64 V36 Z", 13: "M36 64 V92 H64 V64 Z", 14: "M36 36 H8 V64 H36 Z", 15: "M64 36 H92 V64 H64 Z" };
-      const names = { 4: "L1", 5: "R1", 6: "L2", 7: "R2", 10: "L3", 11: "R3" }, sticks = { 17: "L", 18: "R" }, small = { 8: 22, 9: 58 };
-      if (!isStandard || !(number in { ...dots, ...arms, ...names, ...sticks, ...small })) return String(number + 1);
+      const names = { 4: "L1", 5: "R1", 6: "L2", 7: "R2" }, sticks = { 17: "L", 18: "R" }, pressed = { 10: "L", 11: "R" }, small = { 8: 22, 9: 58 };
+      if (!isStandard || !(number in { ...dots, ...arms, ...names, ...sticks, ...pressed, ...small })) return String(number + 1);
       if (names[number]) return names[number];
       if (number < 4) return svg(dots.map(([x, y], at) => `<circle cx="${x}" cy="${y}" r="15" fill="currentColor" opacity="${at === number ? 1 : 0.35}"/>`).join(""));
       // The two in the middle of the gamepad have other names on each make.
       const body = "M24 14 H76 C100 14 104 86 88 86 C76 86 74 68 62 68 H38 C26 68 24 86 12 86 C-4 86 0 14 24 14 Z";
       if (small[number]) return svg(`<path d="${body}" fill="none" stroke="currentColor" stroke-width="5" opacity=".5"/>${Object.entries(small).map(([at, x]) => `<rect x="${x}" y="30" width="20" height="20" rx="6" fill="currentColor" opacity="${Number(at) === number ? 1 : 0.35}"/>`).join("")}`);
       if (arms[number]) return svg(`<path d="M36 8 H64 V36 H92 V64 H64 V92 H36 V64 H8 V36 H36 Z" fill="currentColor" opacity=".35"/><path d="${arms[number]}" fill="currentColor"/>`);
-      return svg(`<circle cx="50" cy="50" r="40" fill="none" stroke="currentColor" stroke-width="9"/><text x="50" y="54" font-size="54" font-weight="700" text-anchor="middle" dominant-baseline="central" fill="currentColor">${sticks[number]}</text>`);
+      // A push to a side has arrows aside, a press of the stick one into it.
+      const stick = (letter, arrows) => svg(`<circle cx="50" cy="58" r="34" fill="none" stroke="currentColor" stroke-width="8"/><text x="50" y="61" font-size="46" font-weight="700" text-anchor="middle" dominant-baseline="central" fill="currentColor">${letter}</text><path d="${arrows}" fill="currentColor"/>`);
+      return sticks[number] ? stick(sticks[number], "M8 38 V78 L-14 58 Z M92 38 V78 L114 58 Z") : stick(pressed[number], "M28 -12 H72 L50 16 Z");
     },
   };
 })();

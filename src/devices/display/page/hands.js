@@ -13,7 +13,7 @@ const Hands = (() => {
   const down = new Set(), pads = new Map(), last = new Map();
   // What is printed on the keys of this keyboard, by their codes, as far as the browser says or has shown it.
   const printed = new Map();
-  let tell = () => {};
+  let tell = () => {}, pressed = null;
 
   /** Where a key of the layout file is on the keyboard. */
   const codeOf = (key) => CODES[key] || (/^[a-z]$/i.test(key) ? `Key${key.toUpperCase()}` : /^[0-9]$/.test(key) ? `Digit${key}` : "");
@@ -36,6 +36,7 @@ const Hands = (() => {
   function press(button, at) {
     if (at - (last.get(button) ?? -Infinity) < BOUNCE_MS) return;
     last.set(button, at);
+    pressed = button;
     tell(button, at);
     // Where no button counts, the page says so.
     const { stage, tutorial } = Stage.shown() || {};
@@ -156,6 +157,7 @@ const Hands = (() => {
       if (wasDown !== isDown) Questions.holdBy("gamepad", isDown, Stage.shown() && Stage.shown().question);
       pads.set(pad.index, now);
     }
+    Readiness.notePad(pads.size > 0);
   }
 
   function begin(toTell, toAnswer, toPoint) {
@@ -185,5 +187,5 @@ const Hands = (() => {
     }).catch(() => {});
   }
 
-  return { begin, printedOn };
+  return { begin, printedOn, pressed: () => pressed };
 })();

@@ -54,7 +54,9 @@ const Questions = (() => {
       card.append(text("p", "count", `${question.number} / ${question.of}`), text("p", "item", question.text));
       if (question.form) card.append(...FORMS[question.form.kind](question, words, kit));
     } else {
-      card.append(text("p", "item done", question.text), sign(text("p", "hint", words.review), "⇥ ↵"));
+      const how = text("p", "hint", words.review);
+      how.dataset.also = words["review keys"];
+      card.append(text("p", "item done", question.text), how);
       const given = element("ol", question.given.length > 6 ? "given small" : "given");
       given.style.setProperty("--rows", Math.ceil(question.given.length / 2));
       for (const { item, text: asked, answer, form, point } of question.given) {
@@ -288,7 +290,8 @@ const Questions = (() => {
   /** A sign or the delete key was typed or touched. */
   function type(question, key) {
     const typed = pending(question) ?? String(question.answer ?? "");
-    const next = key === "⌫" ? typed.slice(0, -1) : pending(question) === null ? key : typed + key;
+    // A digit begins anew after "No answer", and where an answer was given before.
+    const next = key === "⌫" ? typed.slice(0, -1) : pending(question) === null || isSkipped(question) ? key : typed + key;
     if (next.length <= LONGEST_ENTRY) keep(question, next);
     redraw();
   }
@@ -313,7 +316,7 @@ const Questions = (() => {
     tell({ kind: "hold", held: isDown });
     const hint = document.querySelector(".hint.asks");
     document.querySelectorAll(".declines").forEach((not) => not.classList.remove("chosen"));
-    if (hint && isDown) [hint.textContent, heldFrom] = ["", performance.now()];
+    if (hint && isDown) [hint.textContent, heldFrom] = [Stage.scene().words["consent hold"], performance.now()];
     else if (hint && performance.now() - heldFrom < 1000 * hint.parentNode.querySelector(".hold").dataset.seconds) hint.textContent = Stage.scene().words["consent short"];
     if (isDown) agrees = setTimeout(() => tell({ kind: "consent" }), 1000 * seconds);
     document.querySelectorAll(".hold").forEach((button) => button.classList.toggle("held", isDown));
@@ -345,14 +348,20 @@ const Questions = (() => {
     if (question.item && ["ArrowRight", "Enter"].includes(name)) return next(question);
     if (!question.item && name === "Enter") return performance.now() < settled ? undefined : tell({ kind: "confirm" });
     const last = kind === "scale" ? form.points : kind === "choice" ? form.options.length : 0;
-    if (digit !== null && last) return Stage.say("number range", ` 1 – ${Math.min(9, last)}`);
-    return kind !== "text" && [...name].length === 1 ? Stage.say("nothing") : undefined;
+    if (digit !== null && last) return Stage.say("choose", Math.min(9, last));
+    return kind !== "text" && [...name].length === 1 ? refuse(last) : undefined;
+  }
+
+  /** Says that a key does nothing here, and which do: the first `last` digits, and those shown. */
+  function refuse(last) {
+    const shown = [...document.querySelectorAll(".question [data-key]")].map(({ dataset }) => dataset.key), keys = [...(last ? [`1 – ${Math.min(9, last)}`] : []), ...shown];
+    return Stage.say("nothing keys", keys.join(", "));
   }
 
   /** Scrolls a text that is longer than its area. */
   function read(name) {
     const rows = { ArrowDown: 1, ArrowUp: -1, PageDown: 8, PageUp: -8 }[name] || 0;
-    if ([...name].length === 1) Stage.say("nothing");
+    if ([...name].length === 1) refuse(0);
     document.querySelectorAll(".reading").forEach((reading) => reading.scrollBy(0, rows * 40));
   }
 

@@ -1,9 +1,9 @@
 "use strict";
-/** Before a trial: whether screen, delay and sound are as they should be, with figures only where not, and a button for the full screen. */
+/** Before a trial: whether screen, delay, gamepad and sound are as they should be, with figures only where not, and a button for the full screen. */
 const Readiness = (() => {
   // As the console's check of the display has it.
   const SMALL_PX = [1280, 720], SLOW_MS = 30;
-  let took = null, made = null, scene = null, words = {}, isBoxes = false;
+  let took = null, made = null, scene = null, words = {}, isBoxes = false, isHeard = false, hasPad = false;
 
   const filled = (said, ...values) => values.reduce((text, value) => text.replace("#", value), said || "");
 
@@ -38,23 +38,24 @@ const Readiness = (() => {
     if (isBoxes) lines.push(line(words["ready font"], false));
     if (scene.foreign_tutorial) lines.push(line(words["ready tutorial"], false));
     if (took !== null) lines.push(took <= SLOW_MS ? line(words["ready delay"], true) : line(filled(words["ready delay slow"], Math.round(took)), false));
-    if (Sound.isOn()) lines.push(Sound.hasVoice() ? line(words["ready sound"], false, hear) : line(words["ready voice off"], false));
+    if (hasPad && scene.buttons.some(({ gamepad }) => gamepad !== null)) lines.push(line(words["ready pad"], true));
+    if (Sound.isOn()) lines.push(Sound.hasVoice() ? line(words[isHeard ? "ready sound on" : "ready sound"], isHeard, hear) : line(words["ready voice off"], false));
     if (document.fullscreenEnabled && !document.fullscreenElement) lines.push(line(words.fullscreen, false, () => document.documentElement.requestFullscreen().catch(() => {})));
     made.replaceChildren(...lines);
   }
 
   /** A touch is what lets a page sound, so that the sound is on from now on. */
-  function hear(event) {
+  function hear() {
     Sound.play("signal");
     Sound.say(words.ready);
-    event.currentTarget.textContent = words["ready sound on"];
-    event.currentTarget.className = "fine";
+    isHeard = true;
+    draw();
   }
 
   /** The list of what is ready, for a card. */
   function build(kitchen, element) {
     [scene, words] = [kitchen, kitchen.words];
-    isBoxes = lacksFont();
+    [isBoxes, isHeard] = [lacksFont(), false];
     made = element("p", "readiness");
     draw();
     return made;
@@ -64,9 +65,16 @@ const Readiness = (() => {
   function note(ms) {
     const isNew = took === null || Math.round(ms) !== Math.round(took);
     took = ms;
-    if (isNew && made && !made.querySelector("button.fine")) draw();
+    if (isNew) draw();
+  }
+
+  /** Whether there is a gamepad. */
+  function notePad(isThere) {
+    if (isThere === hasPad) return;
+    hasPad = isThere;
+    draw();
   }
 
   for (const kind of ["resize", "fullscreenchange"]) window.addEventListener(kind, draw);
-  return { build, note };
+  return { build, note, notePad };
 })();

@@ -140,7 +140,9 @@ const Stage = (() => {
       others.push(area);
       const made = put(element("div", `pill ${knob.does}`), area);
       made.style.setProperty("--words", words);
-      made.append(text("span", "", knob.label), key(knob));
+      const said = text("span", "", knob.short ?? knob.label);
+      if (knob.short) said.dataset.number = knob.label.slice(knob.short.length);
+      made.append(said, key(knob));
       makeTouch(made, knob);
       return made;
     };
@@ -255,6 +257,9 @@ const Stage = (() => {
     Robot.discard(held, contentOf, replay);
   }
 
+  /** The button that was pressed last on this page, as it is drawn. */
+  const pressedButton = () => root.querySelector(`[data-button="${CSS.escape(Hands.pressed() ?? "")}"]`);
+
   function drawPresses({ presses, tutorial, contents }) {
     ["human", "robot"].forEach((agent, index) => {
       const now = presses[index], before = shown && shown.presses[index];
@@ -267,7 +272,9 @@ const Stage = (() => {
         replay(made, "shakes");
         Sound.play("effectless");
       }
-      Reason.draw(Reason.wordsOf(now, tutorial, scene), made, root, { room, text, put, replay });
+      // The line stands at the button itself, if the page knows which it was.
+      const knob = scene.buttons.find(({ name }) => name === Hands.pressed()), isIt = knob && knob.at === (knob.does === "take" ? now.at.storage : now.at.location);
+      Reason.draw(Reason.wordsOf(now, tutorial, scene, contents), (isIt && pressedButton()) || made, root, { room, text, put, replay });
     });
   }
 
@@ -474,18 +481,20 @@ const Stage = (() => {
   // What is to be pressed or answered now, or what goes on.
   const DOES = ".hinted, .scale, .slider, .options, .number, textarea, .choosing, .probing .choices, .lesson .choices, .lesson .next, .turns .confirm";
 
-  /** Says something that is about no place, `more` behind it: near what can be done, in a trial where other texts open; nothing takes back what was said. */
-  function say(name, more = "") {
+  /** Says something that is about no place, with `what` for its "#": near what can be done, in a trial where other texts open; nothing takes back what was said. */
+  function say(name, what = "") {
     if (!shown || !marks.acts) return undefined;
     if (!name) return Reason.hide();
     const does = [...root.querySelectorAll(DOES)].find((made) => made.checkVisibility({ visibilityProperty: true }));
-    return Reason.say(scene.words[name] + more, does, shown.stage === "running" ? parts.free : undefined, root, { room, put, replay, text });
+    return Reason.say(scene.words[name].replace("#", what), does, shown.stage === "running" ? parts.free : undefined, root, { room, put, replay, text });
   }
 
   /** What was pressed does nothing, or, where it is one of the kitchen's buttons, nothing yet. */
   function sayNothing(isButton) {
-    const stage = shown && shown.stage;
-    say(isButton && ["welcome", "instruction", "ready"].includes(stage) ? "nothing yet" : isButton && stage === "paused" ? "paused text" : "nothing");
+    const stage = shown && shown.stage, name = isButton && ["welcome", "instruction", "ready"].includes(stage) ? "nothing yet" : isButton && stage === "paused" ? "paused text" : "nothing";
+    const button = name === "nothing yet" && marks.acts && pressedButton();
+    if (!button?.checkVisibility({ visibilityProperty: true })) return say(name);
+    return Reason.draw(scene.words[name], button, root, { room, text, put, replay });
   }
 
   /** A press without a connection has no effect, and the page says so once more. */

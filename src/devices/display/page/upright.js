@@ -16,9 +16,9 @@ const Upright = (wall, fontFamily, ratio) => {
   const FLAT = 1.4, PLACE = 9.6, ASIDE = 3.3, PAD = 1, APART = 0.5, FRAMED = 1.6;
   // So much wider is a column of places with buttons than the middle of the screen, if the other has none.
   const WIDER = 4;
-  // Where keys are not shown, the buttons of several orders are told apart by their numbers.
+  // The buttons of several orders are told apart by their numbers, which are shown where keys are not.
   const served = wall.locations.flatMap(({ kind }, index) => (kind === "order" ? [index] : []));
-  const numbered = (knob) => (knob.does === "serve" && served.length > 1 ? { ...knob, label: `${knob.label} ${served.indexOf(knob.at) + 1}` } : knob);
+  const numbered = (knob) => (knob.does === "serve" && served.length > 1 ? { ...knob, label: `${knob.label} ${served.indexOf(knob.at) + 1}`, short: knob.label } : knob);
   const scene = { ...wall, buttons: wall.buttons.map(numbered), display_m: [ratio, 1], tags: [] }, high = WIDE / ratio;
   const across = Room(scene, fontFamily), measure = across.widthOf;
   const of = (kind) => scene.locations.flatMap((spot, index) => (spot.kind === kind ? [index] : []));
@@ -55,9 +55,9 @@ const Upright = (wall, fontFamily, ratio) => {
   function putTheirs(top) {
     let y = top + TITLE;
     for (const row of rows.theirs) {
-      // Each as wide as its name, where there is room; the frame of a hand that is not drawn goes around its name, and needs more of it. Where the hand stands beside them, all alike.
+      // Each as wide as its name, where there is room; a hand's name keeps off the edge; the frame of one that is not drawn goes around its name, and needs more of it. Where the hand stands beside them, all alike.
       const spots = row.map(({ location, storage }) => (storage === undefined ? scene.locations[location] : scene.storages[storage]));
-      const air = row.map(({ storage }) => (storage === undefined && wall.arm === "none" ? 2.6 : 0.6)), total = (all) => all.reduce((sum, width) => sum + width, 0);
+      const air = row.map(({ storage }) => (storage !== undefined ? 0.6 : wall.arm === "none" ? 2.6 : 1.6)), total = (all) => all.reduce((sum, width) => sum + width, 0);
       const wanted = (share) => spots.map(({ label }, at) => (isBeside ? column : Math.max(small + 0.4, share * measure(label, WORDS) + air[at])));
       let share = 1;
       while (share > 0.5 && total(wanted(share)) > WIDE - 2 * EDGE) share -= 0.02;

@@ -120,8 +120,8 @@ fn each_difference_is_told() {
 /// A recording of a participant, by index in the plan, and its trial; `None` for practice. `periods` trials are planned.
 /// Every second participant has the order of the plan turned round.
 fn recording(plan: &str, participant: u32, period: Option<u32>, periods: u32) -> RecordedPlan {
-    let group = if participant % 2 == 0 { "AB" } else { "BA" }.to_string();
-    let is_first = |period: u32| (period == 1) == (participant % 2 == 0);
+    let group = if participant.is_multiple_of(2) { "AB" } else { "BA" }.to_string();
+    let is_first = |period: u32| (period == 1) == participant.is_multiple_of(2);
     let arm = period.map(|period| if is_first(period) { StudyArm::None } else { StudyArm::Wizard });
     RecordedPlan {
         participant: format!("P{:02}", participant + 1),

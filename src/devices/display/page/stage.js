@@ -492,7 +492,7 @@ const Stage = (() => {
   /** What was pressed does nothing, or, where it is one of the kitchen's buttons, nothing yet. */
   function sayNothing(isButton) {
     const stage = shown && shown.stage, name = isButton && ["welcome", "instruction", "ready"].includes(stage) ? "nothing yet" : isButton && stage === "paused" ? "paused text" : "nothing";
-    const button = name === "nothing yet" && marks.acts && pressedButton();
+    const button = name === "nothing yet" && marks.acts ? pressedButton() : null;
     if (!button?.checkVisibility({ visibilityProperty: true })) return say(name);
     return Reason.draw(scene.words[name], button, root, { room, text, put, replay });
   }

@@ -244,7 +244,7 @@ def plays(tomcom, chromium, folder, language, way, size):
         assert page.ask("document.querySelector('.card p').textContent") == words["page tutorial over text"]
         console.wait_for("leaves? the tutorial")
         console.quit()
-        page.wait_for(f"document.querySelector('.toast.open')?.textContent === {json.dumps(words['page ended'])}")
+        page.wait_for(f"[...document.querySelectorAll('.toast.open, .sheet.open')].some((made) => made.textContent.includes({json.dumps(words['page ended'])}))")
         wanted = [button for step in tutorial["step"] if step["kind"] != "robot" for button in step.get("presses", [])]
         questions = sum(step["kind"] in ("question", "probe") for step in tutorial["step"])
         steps = len(tutorial["step"])

@@ -172,11 +172,9 @@ impl Before {
             since_change_s: self.others_changed[..kitchen.locations.len()].iter().map(since_s).collect(),
             errs_about: Vec::new(),
         };
-        if let Some(ErrorCause::Belief { target, with, .. }) = judged.cause {
-            let targets = [Some(target), with].into_iter().flatten();
-            let about = targets.flat_map(|target| target.aspects(kitchen));
-            press.errs_about = about.filter(|aspect| press.is_wrong(aspect.index()) == Some(true)).collect();
-        }
+        let targets = judged.cause.into_iter().flat_map(ErrorCause::targets);
+        let about = targets.flat_map(|target| target.aspects(kitchen));
+        press.errs_about = about.filter(|aspect| press.is_wrong(aspect.index()) == Some(true)).collect();
         press
     }
 }

@@ -499,11 +499,8 @@ pub fn landmarks(recording: &Path, kinds: &[ReplayLandmark]) -> FileResult<Vec<R
             let mut fields = json!(listed);
             fields["why"] = json!(error.why);
             fields["cause"] = json!(error.cause);
-            let targets = match press.cause {
-                Some(ErrorCause::Belief { target, with, .. }) => [Some(target), with],
-                _ => [None, None],
-            };
-            let aspects = targets.into_iter().flatten().flat_map(|target| target.aspects(kitchen));
+            let targets = press.cause.into_iter().flat_map(ErrorCause::targets);
+            let aspects = targets.flat_map(|target| target.aspects(kitchen));
             fields["cause_aspects"] = aspects.map(|aspect| kitchen.aspects[aspect.index()].name.as_str()).collect();
             fields["cost_presses"] = json!(press.verdict.excess);
             fields["believed_wrong"] = json!(believed);

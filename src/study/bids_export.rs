@@ -74,10 +74,7 @@ pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: imp
             }
             _ => {
                 // Onsets count from the beginning of the first part.
-                let started = match &log.logs()[..] {
-                    [first, _, ..] => LogReader::open(first)?.header.started,
-                    _ => log.header.started.clone(),
-                };
+                let started = log.headers().last().and_then(|first| first.started.clone());
                 whole.push((path, LogHeader { started, ..log.header }));
             }
         }

@@ -98,6 +98,15 @@ impl FalseBeliefTarget {
 }
 
 impl ErrorCause {
+    /// What the false belief is about; nothing for other causes.
+    pub fn targets(self) -> impl Iterator<Item = FalseBeliefTarget> {
+        let targets = match self {
+            ErrorCause::Belief { target, with, .. } => [Some(target), with],
+            ErrorCause::Slip | ErrorCause::Planning => [None, None],
+        };
+        targets.into_iter().flatten()
+    }
+
     /// The cause of an error that a simulated participant recorded before its press in `state`; `None` if the
     /// record leads to no press.
     pub fn recorded(kitchen: &Kitchen, state: State, witness: &RecordedBelief) -> Option<ErrorCause> {

@@ -179,12 +179,9 @@ impl FalseBeliefTracker {
 
     /// Records an error: the error counts for every aspect of its cause about which the belief is false.
     pub fn erred(&mut self, kitchen: &Kitchen, cause: ErrorCause) {
-        let ErrorCause::Belief { target, with, .. } = cause else { return };
-        for target in [Some(target), with].into_iter().flatten() {
-            for aspect in target.aspects(kitchen) {
-                if let Some(Some(episode)) = self.open.get_mut(aspect.index()) {
-                    episode.errors += 1;
-                }
+        for aspect in cause.targets().flat_map(|target| target.aspects(kitchen)) {
+            if let Some(Some(episode)) = self.open.get_mut(aspect.index()) {
+                episode.errors += 1;
             }
         }
     }

@@ -411,11 +411,12 @@ pub(super) fn cost(press: &JudgedPress) -> String {
 
 /// The cause, which follows from what a simulated participant recorded.
 pub(super) fn cause(kitchen: &Kitchen, press: &JudgedPress) -> Option<String> {
-    let because = match press.cause? {
+    let cause = press.cause?;
+    let because = match cause {
         ErrorCause::Slip => "slip".to_string(),
         ErrorCause::Planning => "planning error".to_string(),
-        ErrorCause::Belief { target, with, .. } => {
-            let about: Vec<String> = [Some(target), with].into_iter().flatten().map(|one| one.label(kitchen)).collect();
+        ErrorCause::Belief { .. } => {
+            let about: Vec<String> = cause.targets().map(|target| target.label(kitchen)).collect();
             format!("false belief about {}", about.join(" and "))
         }
     };

@@ -324,11 +324,8 @@ impl FalseBeliefsBefore {
 
 /// The state aspects that an error is about: those of the false belief that caused it, and the places of the press.
 pub(crate) fn aspects_of(kitchen: &Kitchen, press: &Press, cause: Option<ErrorCause>) -> Vec<AspectId> {
-    let targets = match cause {
-        Some(ErrorCause::Belief { target, with, .. }) => [Some(target), with],
-        _ => [None, None],
-    };
-    let caused = targets.into_iter().flatten().flat_map(|target| target.aspects(kitchen));
+    let targets = cause.into_iter().flat_map(ErrorCause::targets);
+    let caused = targets.flat_map(|target| target.aspects(kitchen));
     let places = kitchen.involved(press.agent, press.button).into_iter().map(AspectId::of_location);
     caused.chain(places).collect()
 }

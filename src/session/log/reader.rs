@@ -262,6 +262,11 @@ impl LogReader {
         logs
     }
 
+    /// Headers of all parts, the last one first; to be called before any event was read.
+    pub fn headers(&self) -> impl Iterator<Item = &LogHeader> {
+        std::iter::successors(Some(self), |part| part.before.as_deref()).map(|part| &part.header)
+    }
+
     /// Of the next event.
     pub fn place(&self) -> LogPlace {
         match self.before.as_ref().filter(|before| before.events() < self.next_seq) {

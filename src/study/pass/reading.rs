@@ -2,7 +2,7 @@
 //! also the consent and the answers to tutorials, which can stand in practice recordings.
 
 use std::collections::VecDeque;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -39,8 +39,8 @@ use tomcom_core::mind::belief::Belief;
 use tomcom_core::mind::dirichlet::DirichletBelief;
 use tomcom_session::apply::ApplyError;
 use tomcom_session::files::file_error::{FileError, FileResult};
-use tomcom_session::follower::SessionFollower;
-use tomcom_session::log::{LogLine, LogReader, at_line, rater_codes};
+use tomcom_session::follower::{PressBeliefEstimate, SessionFollower};
+use tomcom_session::log::{LogReader, at_line, rater_codes};
 use tomcom_session::plan::{AnswerFormat, Questionnaire, QuestionnaireItem, QuestionnaireItemKind, ScoreRule};
 use tomcom_session::protocol::{ProtocolEvent, StudyProtocolState};
 use tomcom_session::settings::{Condition, ParticipantKind};
@@ -160,9 +160,7 @@ pub fn read(
     let coders = rater_codes::raters(log.folder())?.len();
     let is_coded = coders >= 2;
     // Another version of the program may estimate otherwise.
-    let is_own =
-        |part: &PathBuf| LogReader::open(part).is_ok_and(|part| part.header.program == env!("CARGO_PKG_VERSION"));
-    let repeats = log.logs().iter().all(is_own);
+    let repeats = log.headers().all(|part| part.program == env!("CARGO_PKG_VERSION"));
     let mut pass = ReplayPass::new(log.session(), scope.concepts, is_simulated || is_coded, cost.clone());
     let mut trace = BeliefEvidence::default();
     let mut by_estimate = (!is_simulated).then(|| ByEstimate {
@@ -188,12 +186,12 @@ pub fn read(
         }
         match line.stamped.event {
             Event::Protocol(ProtocolEvent::AnswersConfirmed) => answers.extend(confirmed_answers(&follower.session)),
-            Event::BeliefEstimated(ref estimate) => {
-                let again = follower.estimated.as_ref().map(|estimated| estimated.witness(&kitchen));
-                if repeats && again.as_ref().is_none_or(|again| !is_alike(again, estimate)) {
-                    return Err(unlike_recorded(&log, &line, estimate, again));
+            Event::BeliefEstimated(estimate) => {
+                let again = follower.estimated.as_ref();
+                if repeats && again.is_none_or(|again| !is_alike(again, &estimate)) {
+                    return Err(unlike_recorded(log.path(), (line.number, &line.text), &estimate, again));
                 }
-                estimates.push_back(estimate.clone());
+                estimates.push_back(estimate);
             }
             _ => {}
         }
@@ -292,18 +290,19 @@ pub fn read(
 const ALIKE: f64 = 1e-3;
 
 /// Whether two estimates are of one press and differ by no more than the arithmetic of two machines.
-fn is_alike(one: &RecordedEstimate, other: &RecordedEstimate) -> bool {
-    one.press == other.press && (one.log_p - other.log_p).abs() <= ALIKE
+fn is_alike(again: &PressBeliefEstimate, recorded: &RecordedEstimate) -> bool {
+    again.press == recorded.press && (again.evidence.log_p - recorded.log_p).abs() <= ALIKE
 }
 
 /// The estimate that a log has at a press does not follow from what the log has before it.
 fn unlike_recorded(
-    log: &LogReader,
-    line: &LogLine,
+    log: &Path,
+    (number, text): (usize, &str),
     recorded: &RecordedEstimate,
-    again: Option<RecordedEstimate>,
+    again: Option<&PressBeliefEstimate>,
 ) -> FileError {
-    let again = again.map_or("none".to_string(), |again| format!("ln p = {} of press {}", again.log_p, again.press));
+    let again = again
+        .map_or("none".to_string(), |again| format!("ln p = {:.4} of press {}", again.evidence.log_p, again.press));
     let found = format!(
         "an estimate (ln p = {} of press {}) that does not follow from the events before it, which lead to {again}: the log was \
          changed",
@@ -311,7 +310,7 @@ fn unlike_recorded(
     );
     let remedy = "the log as tomcom wrote it: tomcom replay RECORDING --verify names the first line that differs; or leave the \
                   recording out: tomcom exclude RECORDING --reason …";
-    at_line(log.path(), line.number, &line.text, 0, found, remedy)
+    at_line(log, number, text, 0, found, remedy)
 }
 
 fn details(

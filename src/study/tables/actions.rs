@@ -50,8 +50,7 @@ impl ActionRow<'_> {
 
     /// State aspect of the false belief behind the press (0), and of the second one if it takes two to explain the press (1).
     fn target(&self, which: usize) -> Option<String> {
-        let ErrorCause::Belief { target, with, .. } = self.judged()?.cause? else { return None };
-        [Some(target), with][which].map(|target| target.label(self.kitchen))
+        self.judged()?.cause?.targets().nth(which).map(|target| target.label(self.kitchen))
     }
 
     /// Between the log probabilities under false belief and truth; `None` for causes from raters.

@@ -82,8 +82,9 @@ const Reason = (() => {
     // The nearest points of both, in the middle of the edges that they share.
     const between = (from, to, otherFrom, otherTo) => (to <= otherFrom ? [to, otherFrom] : otherTo <= from ? [from, otherTo] : Array(2).fill((Math.max(from, otherFrom) + Math.min(to, otherTo)) / 2));
     const [[nearX, px], [nearY, py]] = [between(l, r, pl, pr), between(t, b, pt, pb)], [x, y] = [Math.min(r - ROUND, Math.max(l + ROUND, nearX)), Math.min(b - ROUND, Math.max(t + ROUND, nearY))];
-    const far = Math.hypot(px - x, py - y), isIn = ([al, at, ar, ab], along) => al < x + ((px - x) * along) / far && x + ((px - x) * along) / far < ar && at < y + ((py - y) * along) / far && y + ((py - y) * along) / far < ab;
-    const isFree = (along) => isIn([l, t, r, b], along) || !needed.some((area) => isIn(area, along));
+    const far = Math.hypot(px - x, py - y), isIn = ([al, at, ar, ab], [tipX, tipY]) => al < tipX && tipX < ar && at < tipY && tipY < ab;
+    const tip = (along) => [x + ((px - x) * along) / far, y + ((py - y) * along) / far];
+    const isFree = (along) => isIn([l, t, r, b], tip(along)) || !needed.some((area) => isIn(area, tip(along)));
     let length = 0;
     while (length + TIP <= Math.min(far, TAIL[1]) && isFree(length + TIP)) length += TIP;
     return { left: `${x - l}em`, top: `${y - t - TAIL[2] / 2}em`, width: `${length}em`, height: `${TAIL[2]}em`, rotate: `${Math.atan2(py - y, px - x)}rad` };

@@ -56,7 +56,10 @@ fn check_by_hand(session: &str) {
             }
         };
         let spot = plan.spots.iter().find(|spot| place(&spot.thing)).expect("every button is about a place");
+        let samples = terminal.count("\"kind\":\"gaze\"");
         terminal.point(spot.cells.x + spot.cells.width / 2, spot.cells.y + spot.cells.height / 2);
+        // The pointer is seen before the press, also where the next one follows in a moment.
+        terminal.gaze(samples + 2);
         let key = button.key.expect("every button of the human has a key").to_string();
         terminal.key_logs(&key, &format!("\"agent\":\"human\",\"button\":\"{}\"", button.name));
         hands += 1;
